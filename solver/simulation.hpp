@@ -1,0 +1,87 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "solver/scene.hpp"
+
+namespace mpm {
+
+/// How a run ended. The last four are numerical failures: `step`, `time`, `particle` and `value` say where.
+enum class Ending {
+  reached_time,         ///< the end time asked for
+  at_rest,              ///< the rest criterion was met
+  not_at_rest,          ///< the deadline came first
+  not_finite,           ///< a particle's position, velocity or stress is not a finite number
+  inverted,             ///< a particle's volume is not positive
+  outside_grid,         ///< a particle's domain left the grid
+  domain_too_large,     ///< a particle's half size exceeds the cell size, beyond what its shape function covers
+};
+
+/// The name used in records, results and messages, for example "at_rest".
+const char* name_of(Ending ending);
+
+struct Outcome {
+  Ending ending = Ending::reached_time;
+  std::int64_t step = 0;       ///< steps completed
+  double time = 0.0;           ///< simulated [s]
+  std::int64_t particle = -1;  ///< of a numerical failure, else -1
+  double value = 0.0;          ///< the offending value in SI units; 0 without a numerical failure
+
+  /// The run ended where it was meant to: its state can be judged.
+  bool completed() const { return ending == Ending::reached_time || ending == Ending::at_rest; }
+};
+
+/// A copy of the particles for an observer, in double precision whatever the run's own.
+struct ParticleFields {
+  int dimension = 1;
+  std::vector<double> initial_position;  ///< [particle * dimension + axis] [m]
+  std::vector<double> position;          ///< same shape [m]
+  std::vector<double> velocity;          ///< same shape [m/s]
+  std::vector<double> half_size;         ///< same shape [m]; zeros for scheme mpm
+  std::vector<double> stress;            ///< [particle * stress components + component] Cauchy [Pa], tension positive
+  std::vector<double> volume;            ///< [particle] current [m^dimension]
+  std::vector<double> initial_volume;    ///< [particle]
+  std::vector<double> mass;              ///< [particle] [kg per unit of the absent dimensions]
+};
+
+/// Quantities of the whole model after the last step.
+struct Monitor {
+  double unbalanced_force_ratio = 0.0;  ///< sum of |unbalanced nodal force| / total weight [-]
+  double kinetic_energy_ratio = 0.0;    ///< kinetic energy of the grid / (total weight * cell size) [-]
+};
+
+/// A scene in motion. Memory is reserved on construction; advancing allocates nothing.
+class Simulation {
+ public:
+  explicit Simulation(const Scene& scene);  ///< throws SceneError
+  ~Simulation();
+  Simulation(Simulation&&) noexcept;
+  Simulation& operator=(Simulation&&) noexcept;
+
+  /// Advances one step. False once the run has ended; then `outcome()` says how.
+  bool advance();
+
+  /// Advances to the end, calling `observe` at the start, whenever `every` [s] have passed, and at the end.
+  const Outcome& run(double every, const std::function<void(const Simulation&)>& observe);
+
+  const Outcome& outcome() const;
+  double time() const;
+  double time_step() const;  ///< [s]
+  std::int64_t steps() const;
+  std::int64_t particle_count() const;
+  std::int64_t cell_crossings() const;  ///< particle centres that changed cell so far, summed over steps
+  Monitor monitor() const;
+  ParticleFields particles() const;
+
+ private:
+  class Engine;
+  template <int Dim, class Real, Scheme scheme>
+  class EngineOf;
+  std::unique_ptr<Engine> engine_;
+};
+
+}  // namespace mpm

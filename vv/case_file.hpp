@@ -1,0 +1,107 @@
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "solver/scene.hpp"
+
+namespace mpm::vv {
+
+using Json = nlohmann::ordered_json;
+
+/// Bad input, in one line: file, JSON pointer, what was expected there and what was found.
+class CaseError : public std::runtime_error {
+ public:
+  CaseError(const std::string& file, const std::string& pointer, const std::string& expected,
+            const std::string& found)
+      : std::runtime_error(file + ": " + (pointer.empty() ? "/" : pointer) + ": expected " + expected + ", found " + found) {}
+};
+
+enum class Comparison { at_most, at_least };
+
+/// What a gate compares: a metric of each run, or a property of the series of a metric over a refinement.
+enum class Statistic {
+  value,        ///< the metric itself, one result per run
+  reduction,    ///< first / last of the series
+  worst_ratio,  ///< largest (next / previous) along the series; below 1 means it falls at every refinement
+  last_order,   ///< observed order of the last pair
+};
+
+/// A sweep value that restricts a gate or a figure to some runs: parameter (JSON pointer) and allowed values.
+struct Selector {
+  std::string parameter;
+  std::vector<Json> values;
+};
+
+struct Gate {
+  std::string id;
+  std::string metric;  ///< a name `metrics()` of vv/norms.hpp knows
+  Statistic statistic = Statistic::value;
+  std::string across;  ///< JSON pointer of the refined parameter, for the series statistics; else empty
+  std::vector<Selector> where;
+  Comparison comparison = Comparison::at_most;
+  double threshold = 0.0;
+  std::string basis;   ///< theory, requirement, fit or reference_uncertainty
+  std::string reason;  ///< why this threshold, for a person
+  bool must_fail = false;  ///< a control: the configuration is known to be bad and the gate must turn red
+};
+
+struct SweepAxis {
+  std::string parameter;  ///< JSON pointer into the case, below /scene
+  std::vector<Json> values;
+};
+
+/// A history probe: the body's particle nearest to `at` (initial place), every `every` seconds.
+struct HistoryProbe {
+  std::string id;
+  std::string quantity;  ///< displacement, velocity or stress
+  PerAxis at{};          ///< initial place [m]
+  double every = 0.0;    ///< sampling interval [s]
+};
+
+/// A picture the report draws from the verdict of the case.
+struct FigureRequest {
+  std::string id;
+  std::string kind;      ///< profiles, convergence, bars, history
+  std::string caption;
+  std::string panels;    ///< JSON pointer of the swept parameter that separates panels; may be empty
+  std::string series;    ///< JSON pointer of the swept parameter that separates curves; may be empty
+  std::string quantity;  ///< profiles: stress, displacement or stress_error; history: probe id
+  std::vector<std::string> metrics;     ///< convergence, bars
+  std::string over;                     ///< convergence: refined parameter
+  std::vector<std::string> references;  ///< profiles: names of reference solutions drawn beside the runs
+  std::vector<Selector> where;
+};
+
+/// One run of a sweep: its parameters, the resolved scene, and the scene's own text (for hashing).
+struct RunRequest {
+  std::vector<std::pair<std::string, Json>> parameters;  ///< swept JSON pointer and value, in sweep order
+  Json scene_text;                                       ///< the case's /scene with the parameters put in
+  Scene scene;                                           ///< checked
+};
+
+/// One case file, checked: every run it asks for can start.
+struct Case {
+  std::string id, title, description;
+  std::string figure_of_paper;              ///< for example "Figure 1"; may be empty
+  std::vector<std::string> claims;          ///< what the paper (or theory) says that this case puts to the test
+  std::vector<std::string> notes;           ///< what a reader should know
+  bool quick = true;                        ///< part of `report --quick`
+  std::vector<std::string> references;      ///< reference solutions to judge against: equilibrium, hencky, zhang
+  std::vector<SweepAxis> sweep;
+  std::vector<RunRequest> runs;
+  std::vector<HistoryProbe> probes;
+  std::vector<Gate> gates;
+  std::vector<FigureRequest> figures;
+  std::filesystem::path file;
+  Json text;
+};
+
+/// Reads, validates (against vv/case.schema.json too) and expands a case file. Throws CaseError.
+Case read_case(const std::filesystem::path& file);
+
+}  // namespace mpm::vv
