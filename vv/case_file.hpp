@@ -91,6 +91,7 @@ struct Case {
   std::vector<std::string> claims;          ///< what the paper (or theory) says that this case puts to the test
   std::vector<std::string> notes;           ///< what a reader should know
   bool quick = true;                        ///< part of `report --quick`
+  bool repeat_on_other_threads = false;     ///< run everything a second time on another number of threads: `bits_differ`
   std::vector<std::string> references;      ///< reference solutions to judge against: equilibrium, hencky, zhang
   std::vector<SweepAxis> sweep;
   std::vector<RunRequest> runs;

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "vv/verdict.hpp"
+
+namespace mpm::vv {
+
+/// A number that a record can be judged by.
+struct Metric {
+  std::string name;       ///< as gates write it, for example "hencky.stress.l2"
+  std::string unit;       ///< "-" for a ratio
+  std::string reference;  ///< the reference solution it needs (a member of Case::references), or empty
+  std::string meaning;    ///< one line for a person
+};
+
+/// Every metric there is, in the order a report lists them.
+const std::vector<Metric>& metric_catalogue();
+
+/// Reference solutions a case may ask for: equilibrium, hencky, zhang.
+const std::vector<std::string>& reference_catalogue();
+
+/// What the norms say of a record.
+struct Judgement {
+  std::map<std::string, double> metrics;  ///< finite values only
+  std::vector<Curve> curves;              ///< of the run and of the references it was judged against
+};
+
+/// Judges a record by the references of its case. A run that did not complete has only the metrics that
+/// need no final state (cell_crossings, steps, particle_steps, completed).
+Judgement judge(const Case& definition, const RunRequest& request, const Record& record);
+
+}  // namespace mpm::vv
