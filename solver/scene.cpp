@@ -1,0 +1,314 @@
+#include "solver/scene.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <string_view>
+#include <utility>
+
+#include "solver/error.hpp"
+
+namespace mpm {
+namespace {
+
+/// How far a length may be from a whole number of cells (or of particle spacings), in cells. Decimal lengths
+/// and the division leave errors of a few 1e-16 times the number of cells, so below 1e-7 for the largest grid
+/// allowed; a real mistake is a visible part of a cell.
+constexpr double whole_number_tolerance = 1e-6;
+
+/// The most cells, and the most particles, a scene may have: about 10 GB of particles. Beyond it a misplaced
+/// decimal point is more likely than a wish.
+constexpr double most_elements = 1e8;
+
+constexpr double largest_stable_fraction = 10.0;
+
+template <class... Ts>
+struct Overloaded : Ts... {
+  using Ts::operator()...;
+};
+
+/// The shortest text that reads back as `value`, with its unit.
+std::string text_of(double value, std::string_view unit = "") {
+  char buffer[32];
+  char* end = std::to_chars(buffer, buffer + sizeof buffer, value).ptr;
+  std::string text(buffer, end);
+  if (!unit.empty()) text.append(" ").append(unit);
+  return text;
+}
+
+std::string at_index(const std::string& place, std::size_t index) {
+  return place + "/" + std::to_string(index);
+}
+
+void require(bool condition, const std::string& place, const std::string& expected,
+             const std::string& found) {
+  if (!condition) throw SceneError(place, expected, found);
+}
+
+void require_positive(double value, const std::string& place, const std::string& what,
+                      std::string_view unit = "") {
+  require(std::isfinite(value) && value > 0.0, place, what + " above zero", text_of(value, unit));
+}
+
+void require_finite(double value, const std::string& place, const std::string& what,
+                    std::string_view unit = "") {
+  require(std::isfinite(value), place, "a finite " + what, text_of(value, unit));
+}
+
+std::size_t axes_of(const Scene& scene) { return static_cast<std::size_t>(scene.dimension); }
+
+template <class Enum>
+void require_known(Enum value, std::initializer_list<Enum> known, const std::string& place,
+                   const std::string& what) {
+  require(std::find(known.begin(), known.end(), value) != known.end(), place, "a known " + what,
+          "number " + std::to_string(static_cast<int>(value)) + " of none");
+}
+
+void check_method(const Scene& scene) {
+  require(scene.dimension >= 1 && scene.dimension <= max_dimension, "/dimension", "1 or 2",
+          std::to_string(scene.dimension));
+  require_known(scene.scheme, {Scheme::mpm, Scheme::ugimp, Scheme::cpgimp}, "/scheme", "scheme");
+  require_known(scene.update_order, {UpdateOrder::musl, UpdateOrder::usf, UpdateOrder::usl}, "/update_order",
+                "update order");
+  require_known(scene.precision, {Precision::float64, Precision::float32}, "/precision", "precision");
+  require(scene.flip_fraction >= 0.0 && scene.flip_fraction <= 1.0, "/flip_fraction", "a number from 0 to 1",
+          text_of(scene.flip_fraction));
+  require(scene.damping >= 0.0 && scene.damping < 1.0, "/damping", "a number from 0 to below 1",
+          text_of(scene.damping));
+}
+
+bool whole(double number) { return std::abs(number - std::round(number)) <= whole_number_tolerance; }
+
+void check_grid(const Scene& scene) {
+  require_positive(scene.cell_size, "/grid/cell_size", "a cell size", "m");
+  double cells_in_all = 1.0;
+  for (std::size_t axis = 0; axis < axes_of(scene); ++axis) {
+    const std::string upper_place = at_index("/grid/upper", axis);
+    const double lower = scene.grid_lower[axis], upper = scene.grid_upper[axis];
+    require_finite(lower, at_index("/grid/lower", axis), "length", "m");
+    require_finite(upper, upper_place, "length", "m");
+    const double cells = (upper - lower) / scene.cell_size;
+    require(std::round(cells) >= 1.0, upper_place,
+            "at least one cell above the lower corner " + text_of(lower, "m"), text_of(upper, "m"));
+    cells_in_all *= cells;
+    require(cells_in_all <= most_elements, "/grid/cell_size",
+            "at most " + text_of(most_elements) + " cells in the grid", text_of(cells_in_all) + " of them");
+    require(whole(cells), upper_place,
+            "a whole number of cells of " + text_of(scene.cell_size, "m") + " above the lower corner " +
+                text_of(lower, "m"),
+            text_of(upper, "m") + ", " + text_of(cells) + " cells above it");
+  }
+}
+
+double youngs_modulus_of(const Material& material) {
+  return std::visit([](const auto& law) { return law.youngs_modulus; }, material);
+}
+
+void check_material(const Scene& scene, const Body& body, const std::string& place) {
+  const double modulus = youngs_modulus_of(body.material);
+  require_positive(modulus, place + "/youngs_modulus", "a modulus", "Pa");
+  const double wave_speed = std::sqrt(modulus / body.density);
+  require(std::isfinite(wave_speed) && wave_speed > 0.0, place + "/youngs_modulus",
+          "a modulus with which the wave speed sqrt(modulus / density) is a number above zero",
+          text_of(modulus, "Pa") + " at a density of " + text_of(body.density, "kg/m^3"));
+  std::visit(Overloaded{[&](const LinearElastic& law) {
+                          require(law.poissons_ratio >= 0.0 && law.poissons_ratio < 0.5,
+                                  place + "/poissons_ratio", "a number from 0 to below 0.5",
+                                  text_of(law.poissons_ratio));
+                        },
+                        [&](const ZhangElastic&) {
+                          require(scene.dimension == 1, place + "/law",
+                                  "a law for " + std::to_string(scene.dimension) + " dimensions",
+                                  "zhang_elastic, which has one");
+                        }},
+             body.material);
+}
+
+/// Checks where a body's edges are along one axis; returns how many particles fit between them.
+double check_extent(const Scene& scene, const Body& body, std::size_t axis, const std::string& place) {
+  const int per_cell = body.particles_per_cell[axis];
+  require(per_cell >= 1, at_index(place + "/particles_per_cell", axis), "at least 1 particle",
+          std::to_string(per_cell));
+  const std::string lower_place = at_index(place + "/lower", axis),
+                    upper_place = at_index(place + "/upper", axis);
+  const double lower = body.lower[axis], upper = body.upper[axis];
+  require_finite(lower, lower_place, "length", "m");
+  require_finite(upper, upper_place, "length", "m");
+
+  const double spacing = scene.cell_size / per_cell;
+  const auto spacings_at = [&](double edge) { return (edge - scene.grid_lower[axis]) / spacing; };
+  require(
+      std::round(spacings_at(upper) - spacings_at(lower)) >= 1.0, upper_place,
+      "at least one particle of " + text_of(spacing, "m") + " above the lower edge " + text_of(lower, "m"),
+      text_of(upper, "m"));
+  const double slack = whole_number_tolerance * scene.cell_size;
+  require(lower >= scene.grid_lower[axis] - slack, lower_place,
+          "a body inside the grid, which begins at " + text_of(scene.grid_lower[axis], "m"),
+          text_of(lower, "m"));
+  require(upper <= scene.grid_upper[axis] + slack, upper_place,
+          "a body inside the grid, which ends at " + text_of(scene.grid_upper[axis], "m"),
+          text_of(upper, "m"));
+  for (const auto& [edge_place, edge] : {std::pair(lower_place, lower), std::pair(upper_place, upper)}) {
+    require(whole(spacings_at(edge)), edge_place,
+            "a whole number of particle spacings of " + text_of(spacing, "m") +
+                " above the grid's lower corner " + text_of(scene.grid_lower[axis], "m"),
+            text_of(edge, "m") + ", " + text_of(spacings_at(edge)) + " spacings above it");
+  }
+  return spacings_at(upper) - spacings_at(lower);
+}
+
+/// Returns the number of particles of the body.
+double check_body(const Scene& scene, const Body& body, const std::string& place) {
+  require(!body.name.empty(), place + "/name", "a name", "an empty text");
+  require_positive(body.density, place + "/density", "a density", "kg/m^3");
+  check_material(scene, body, place + "/material");
+  double particles = 1.0;
+  for (std::size_t axis = 0; axis < axes_of(scene); ++axis)
+    particles *= check_extent(scene, body, axis, place);
+  return particles;
+}
+
+bool overlap(const Scene& scene, const Body& a, const Body& b) {
+  const double slack = whole_number_tolerance * scene.cell_size;
+  for (std::size_t axis = 0; axis < axes_of(scene); ++axis) {
+    if (a.upper[axis] <= b.lower[axis] + slack || b.upper[axis] <= a.lower[axis] + slack) return false;
+  }
+  return true;
+}
+
+void check_bodies(const Scene& scene) {
+  require(!scene.bodies.empty(), "/bodies", "at least one body", "none");
+  double particles = 0.0;
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const Body& body = scene.bodies[i];
+    const std::string place = at_index("/bodies", i);
+    particles += check_body(scene, body, place);
+    require(particles <= most_elements, place + "/particles_per_cell",
+            "at most " + text_of(most_elements) + " particles in the scene", text_of(particles) + " of them");
+    for (std::size_t j = 0; j < i; ++j) {
+      const Body& other = scene.bodies[j];
+      require(body.name != other.name, place + "/name", "a name no other body has",
+              "\"" + body.name + "\", the name of body " + std::to_string(j));
+      require(!overlap(scene, body, other), place, "a body clear of all others",
+              "\"" + body.name + "\", which overlaps \"" + other.name + "\"");
+    }
+  }
+}
+
+void check_loading(const Gravity& gravity) {
+  const std::string place = "/gravity/loading";
+  std::visit(
+      Overloaded{[](const StepLoading&) {},
+                 [&](const RampLoading& ramp) {
+                   require_positive(ramp.duration, place + "/duration", "a duration", "s");
+                 },
+                 [&](const StagedLoading& staged) {
+                   require_positive(staged.hold, place + "/hold", "a duration", "s");
+                   require(!staged.fractions.empty(), place + "/fractions", "at least one stage", "none");
+                   for (std::size_t i = 0; i < staged.fractions.size(); ++i) {
+                     const double fraction = staged.fractions[i];
+                     require(std::isfinite(fraction) && fraction >= 0.0, at_index(place + "/fractions", i),
+                             "a fraction of full gravity, zero or above", text_of(fraction));
+                   }
+                 }},
+      gravity.loading);
+}
+
+void check_gravity(const Scene& scene) {
+  const Gravity& gravity = scene.gravity;
+  for (std::size_t axis = 0; axis < axes_of(scene); ++axis) {
+    require_finite(gravity.acceleration[axis], at_index("/gravity/acceleration", axis), "acceleration",
+                   "m/s^2");
+  }
+  require(std::isfinite(gravity.level) && gravity.level >= 0.0, "/gravity/level",
+          "a multiple of the acceleration, zero or above", text_of(gravity.level));
+  check_loading(gravity);
+}
+
+void check_time_step(const Scene& scene) {
+  std::visit(
+      Overloaded{[](const GivenTimeStep& given) {
+                   require_positive(given.seconds, "/time_step/seconds", "a time", "s");
+                 },
+                 // Above 1 a run is expected to go wrong, which is worth studying; far above, it is a slip.
+                 [](const StableFraction& stable) {
+                   require(stable.fraction > 0.0 && stable.fraction <= largest_stable_fraction,
+                           "/time_step/stable_fraction",
+                           "a number above 0, at most " + text_of(largest_stable_fraction),
+                           text_of(stable.fraction));
+                 }},
+      scene.time_step);
+}
+
+bool weightless(const Scene& scene) {
+  for (std::size_t axis = 0; axis < axes_of(scene); ++axis) {
+    if (scene.gravity.level * scene.gravity.acceleration[axis] != 0.0) return false;
+  }
+  return true;
+}
+
+void check_rest(const Scene& scene, const AtRest& rest) {
+  const std::string place = "/termination";
+  require_positive(rest.unbalanced_force_ratio, place + "/unbalanced_force_ratio", "a ratio");
+  require_positive(rest.kinetic_energy_ratio, place + "/kinetic_energy_ratio", "a ratio");
+  require_positive(rest.deadline, place + "/deadline", "a time", "s");
+  require(!weightless(scene), place + "/type",
+          "at_time where gravity is zero: rest is measured against the weight", "at_rest");
+  const double settled = scene.gravity.settled_after();
+  require(rest.deadline > settled, place + "/deadline",
+          "a time after gravity has settled at " + text_of(settled, "s"), text_of(rest.deadline, "s"));
+}
+
+void check_termination(const Scene& scene) {
+  std::visit(
+      Overloaded{[](const AtTime& end) { require_positive(end.time, "/termination/time", "a time", "s"); },
+                 [&](const AtRest& rest) { check_rest(scene, rest); }},
+      scene.termination);
+}
+
+/// The one place that says what the program cannot simulate although it is described correctly.
+void check_simulable(const Scene& scene) {
+  require(scene.dimension == 1, "/dimension", "1, the only number of dimensions that can be simulated",
+          std::to_string(scene.dimension));
+}
+
+std::size_t stage_at(const StagedLoading& staged, double time) {
+  std::size_t stage = 0;
+  while (stage + 1 < staged.fractions.size() && time >= staged.hold * static_cast<double>(stage + 1)) ++stage;
+  return stage;
+}
+
+}  // namespace
+
+double Gravity::fraction(double time) const {
+  return std::visit(
+      Overloaded{[](const StepLoading&) { return 1.0; },
+                 [&](const RampLoading& ramp) { return std::clamp(time / ramp.duration, 0.0, 1.0); },
+                 [&](const StagedLoading& staged) { return staged.fractions[stage_at(staged, time)]; }},
+      loading);
+}
+
+double Gravity::settled_after() const {
+  return std::visit(Overloaded{[](const StepLoading&) { return 0.0; },
+                               [](const RampLoading& ramp) { return ramp.duration; },
+                               [](const StagedLoading& staged) {
+                                 std::size_t last = staged.fractions.size() - 1;
+                                 while (last > 0 && staged.fractions[last - 1] == staged.fractions[last])
+                                   --last;
+                                 return staged.hold * static_cast<double>(last);
+                               }},
+                    loading);
+}
+
+void check(const Scene& scene) {
+  check_method(scene);
+  check_grid(scene);
+  check_bodies(scene);
+  check_gravity(scene);
+  check_time_step(scene);
+  check_termination(scene);
+  check_simulable(scene);
+}
+
+}  // namespace mpm
