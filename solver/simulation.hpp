@@ -39,6 +39,7 @@ struct Outcome {
 struct ParticleFields {
   int dimension = 1;
   std::vector<double> initial_position;  ///< [particle * dimension + axis] [m]
+  std::vector<double> displacement;      ///< same shape [m]
   std::vector<double> position;          ///< same shape [m]
   std::vector<double> velocity;          ///< same shape [m/s]
   std::vector<double> half_size;         ///< same shape [m]; zeros for scheme mpm

@@ -1,0 +1,239 @@
+#include "solver/simulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "solver/time_step.hpp"
+
+namespace mpm {
+namespace {
+
+/// Steps between two looks at the rest criterion: rare enough to cost nothing, often enough to stop in time.
+constexpr std::int64_t steps_between_rest_checks = 64;
+
+double fastest_wave(const Scene& scene) {
+  const auto modulus = [&](const Material& material) {
+    const auto wave_modulus = [](const auto& law) { return law.wave_modulus(); };
+    return scene.dimension == 1 ? std::visit(wave_modulus, law_of<1, double>(material))
+                                : std::visit(wave_modulus, law_of<2, double>(material));
+  };
+  double speed = 0.0;
+  for (const Body& body : scene.bodies) speed = std::max(speed, std::sqrt(modulus(body.material) / body.density));
+  return speed;
+}
+
+double time_step_of(const Scene& scene) {
+  if (const auto* given = std::get_if<GivenTimeStep>(&scene.time_step)) return given->seconds;
+  return std::get<StableFraction>(scene.time_step).fraction * scene.cell_size / fastest_wave(scene);
+}
+
+template <class Real, std::size_t Components>
+std::vector<double> interleave(const std::array<Field<Real>, Components>& fields, Eigen::Index count) {
+  std::vector<double> all(static_cast<std::size_t>(count) * Components, 0.0);
+  for (std::size_t c = 0; c < Components; ++c) {
+    for (Eigen::Index p = 0; p < fields[c].size(); ++p) {
+      all[static_cast<std::size_t>(p) * Components + c] = static_cast<double>(fields[c][p]);
+    }
+  }
+  return all;
+}
+
+template <class Real>
+std::vector<double> to_doubles(const Field<Real>& field) {
+  std::vector<double> all(static_cast<std::size_t>(field.size()));
+  std::transform(field.begin(), field.end(), all.begin(), [](Real value) { return static_cast<double>(value); });
+  return all;
+}
+
+Ending ending_of(StencilFault fault) {
+  switch (fault) {
+    case StencilFault::not_finite: return Ending::not_finite;
+    case StencilFault::inverted: return Ending::inverted;
+    case StencilFault::domain_too_large: return Ending::domain_too_large;
+    default: return Ending::outside_grid;
+  }
+}
+
+}  // namespace
+
+const char* name_of(Ending ending) {
+  switch (ending) {
+    case Ending::reached_time: return "reached_time";
+    case Ending::at_rest: return "at_rest";
+    case Ending::not_at_rest: return "not_at_rest";
+    case Ending::not_finite: return "not_finite";
+    case Ending::inverted: return "inverted";
+    case Ending::outside_grid: return "outside_grid";
+    case Ending::domain_too_large: return "domain_too_large";
+  }
+  return "unknown";
+}
+
+/// A simulation whose dimension, scalar and shape function have been forgotten.
+class Simulation::Engine {
+ public:
+  explicit Engine(const Scene& scene) : scene_(scene), time_step_(time_step_of(scene)) {}
+  virtual ~Engine() = default;
+
+  virtual std::int64_t particle_count() const = 0;
+  virtual std::int64_t cell_crossings() const = 0;
+  virtual Monitor monitor() const = 0;
+  virtual ParticleFields particles() const = 0;
+
+  bool advance() {
+    if (ended_) return false;
+    const double fraction = scene_.gravity.fraction(time_at(outcome_.step + 1));
+    if (step(scene_.gravity.level * fraction)) {
+      ++outcome_.step;
+      outcome_.time = time_at(outcome_.step);
+    }
+    ended_ = ended_ || is_finished();
+    return !ended_;
+  }
+
+  const Outcome& outcome() const { return outcome_; }
+  double time_step() const { return time_step_; }
+  double time_at(std::int64_t step) const { return static_cast<double>(step) * time_step_; }
+
+ protected:
+  /// One step; false after `fail`.
+  virtual bool step(double gravity_level) = 0;
+
+  void fail(Ending ending, Eigen::Index particle, double value) {
+    outcome_.ending = ending;
+    outcome_.particle = particle;
+    outcome_.value = value;
+    ended_ = true;
+  }
+
+  const Scene& scene() const { return scene_; }
+
+ private:
+  bool is_finished() {
+    if (const auto* at_time = std::get_if<AtTime>(&scene_.termination)) {
+      // Half a step of slack: the end time is reached by the step nearest to it.
+      return outcome_.time > at_time->time - 0.5 * time_step_;
+    }
+    const AtRest& rest = std::get<AtRest>(scene_.termination);
+    if (outcome_.time >= scene_.gravity.settled_after() && outcome_.step % steps_between_rest_checks == 0) {
+      const Monitor now = monitor();
+      outcome_.ending = Ending::at_rest;
+      if (now.unbalanced_force_ratio <= rest.unbalanced_force_ratio &&
+          now.kinetic_energy_ratio <= rest.kinetic_energy_ratio) {
+        return true;
+      }
+    }
+    outcome_.ending = Ending::not_at_rest;
+    return outcome_.time > rest.deadline - 0.5 * time_step_;
+  }
+
+  Scene scene_;
+  double time_step_;
+  Outcome outcome_;
+  bool ended_ = false;
+};
+
+template <int Dim, class Real, Scheme scheme>
+class Simulation::EngineOf final : public Simulation::Engine {
+ public:
+  explicit EngineOf(const Scene& description)
+      : Engine(description), stepper_(description, time_step()), start_(stepper_.particles().position) {}
+
+  std::int64_t particle_count() const override { return stepper_.particles().count(); }
+  std::int64_t cell_crossings() const override { return stepper_.transfer().cell_crossings(); }
+
+  Monitor monitor() const override {
+    double unbalanced = 0.0, energy = 0.0;
+    for (std::size_t i = 0; i < stepper_.grid().sums.size(); ++i) {
+      const auto& node = stepper_.grid().sums[i];
+      for (std::size_t a = 0; a < Dim; ++a) {
+        const double velocity = static_cast<double>(stepper_.grid().motion[i].velocity[a]);
+        unbalanced += std::abs(static_cast<double>(node.force[a]));
+        energy += 0.5 * static_cast<double>(node.mass) * velocity * velocity;
+      }
+    }
+    return {unbalanced / weight(), energy / (weight() * scene().cell_size)};
+  }
+
+  ParticleFields particles() const override {
+    const Particles<Dim, Real>& p = stepper_.particles();
+    ParticleFields fields;
+    fields.dimension = Dim;
+    fields.initial_position = interleave(start_, p.count());
+    fields.displacement = interleave(p.displacement, p.count());
+    fields.position = interleave(p.position, p.count());
+    fields.velocity = interleave(p.velocity, p.count());
+    fields.half_size = interleave(p.half_size, p.count());
+    fields.stress = interleave(p.stress, p.count());
+    fields.volume = to_doubles(p.volume);
+    fields.initial_volume = to_doubles(p.initial_volume);
+    fields.mass = to_doubles(p.mass);
+    return fields;
+  }
+
+ protected:
+  bool step(double gravity_level) override {
+    Vector<Dim, Real> gravity;
+    for (std::size_t a = 0; a < Dim; ++a) {
+      gravity[a] = static_cast<Real>(gravity_level * scene().gravity.acceleration[a]);
+    }
+    if (stepper_.advance(gravity)) return true;
+    const auto fault = stepper_.find_fault();
+    fail(ending_of(fault.kind), fault.particle, fault.value);
+    return false;
+  }
+
+ private:
+  /// Weight of everything under full gravity [N].
+  double weight() const {
+    double squares = 0.0;
+    for (std::size_t a = 0; a < Dim; ++a) squares += std::pow(scene().gravity.acceleration[a], 2);
+    return total_mass(stepper_.particles()) * scene().gravity.level * std::sqrt(squares);
+  }
+
+  TimeStepper<Dim, Real, scheme> stepper_;
+  std::array<Field<Real>, Dim> start_;
+};
+
+Simulation::Simulation(const Scene& scene) {
+  check(scene);
+  const auto with_scheme = [&]<class Real>(Real) -> std::unique_ptr<Engine> {
+    switch (scene.scheme) {
+      case Scheme::mpm: return std::make_unique<EngineOf<1, Real, Scheme::mpm>>(scene);
+      case Scheme::ugimp: return std::make_unique<EngineOf<1, Real, Scheme::ugimp>>(scene);
+      default: return std::make_unique<EngineOf<1, Real, Scheme::cpgimp>>(scene);
+    }
+  };
+  engine_ = scene.precision == Precision::float32 ? with_scheme(0.0F) : with_scheme(0.0);
+}
+
+Simulation::~Simulation() = default;
+Simulation::Simulation(Simulation&&) noexcept = default;
+Simulation& Simulation::operator=(Simulation&&) noexcept = default;
+
+bool Simulation::advance() { return engine_->advance(); }
+
+const Outcome& Simulation::run(double every, const std::function<void(const Simulation&)>& observe) {
+  observe(*this);
+  std::int64_t observed = 0;
+  while (advance()) {
+    const auto due = static_cast<std::int64_t>(time() / every * (1 + 1e-12));
+    if (due > observed) {
+      observed = due;
+      observe(*this);
+    }
+  }
+  observe(*this);
+  return outcome();
+}
+
+const Outcome& Simulation::outcome() const { return engine_->outcome(); }
+double Simulation::time() const { return engine_->outcome().time; }
+double Simulation::time_step() const { return engine_->time_step(); }
+std::int64_t Simulation::steps() const { return engine_->outcome().step; }
+std::int64_t Simulation::particle_count() const { return engine_->particle_count(); }
+std::int64_t Simulation::cell_crossings() const { return engine_->cell_crossings(); }
+Monitor Simulation::monitor() const { return engine_->monitor(); }
+ParticleFields Simulation::particles() const { return engine_->particles(); }
+
+}  // namespace mpm
