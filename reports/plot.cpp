@@ -1,0 +1,715 @@
+#include "reports/plot.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace mpm::reports {
+namespace {
+
+// Sizes in points. Type is at least 9 pt everywhere but in the stamp.
+constexpr double type_size = 9.0;
+constexpr double title_size = 9.5;
+constexpr double stamp_size = 6.5;
+constexpr double line_height = 12.0;
+constexpr double axis_width = 0.7;
+constexpr double major_tick = 4.0;
+constexpr double minor_tick = 2.2;
+constexpr double tick_gap = 3.5;
+constexpr double outer_margin = 7.0;
+constexpr double column_gap = 16.0;
+constexpr double row_gap = 13.0;
+constexpr double edge_mark = 5.0;
+
+const Color ink{0.1, 0.1, 0.1, 1.0};
+const Color muted{0.36, 0.36, 0.36, 1.0};
+const Color grid_color{0.905, 0.905, 0.905, 1.0};
+
+TextStyle text_style(Horizontal horizontal, Vertical vertical, double size = type_size, const Color& color = ink) {
+  TextStyle style;
+  style.size = size;
+  style.color = color;
+  style.horizontal = horizontal;
+  style.vertical = vertical;
+  return style;
+}
+
+double text_width(const std::string& markup, double size = type_size) {
+  TextStyle style;
+  style.size = size;
+  return markup.empty() ? 0.0 : Canvas::measure(markup, style).width;
+}
+
+/// Where a value stands along an axis: 0 at the lower end, 1 at the upper one; may be infinite or NaN.
+double fraction(const Axis& axis, double value) {
+  const auto [lower, upper] = axis.range;
+  if (axis.scale == Scale::linear) return (value - lower) / (upper - lower);
+  if (value <= 0.0) return -std::numeric_limits<double>::infinity();
+  return std::log(value / lower) / std::log(upper / lower);
+}
+
+/// An axis with its ticks, labels and common power of ten worked out.
+struct ReadyAxis {
+  Axis axis;
+  std::vector<std::pair<double, std::string>> labels;
+  std::vector<double> minor;
+  std::string multiplier;  ///< markup of a power of ten common to all labels; may be empty
+};
+
+std::string log_label(double value) {
+  const double exponent = std::log10(value);
+  const double whole = std::round(exponent);
+  if (std::abs(exponent - whole) < 1e-9) return power_of_ten(static_cast<int>(whole));
+  const double decade = std::floor(exponent);
+  return fmt::format("{:.0f}·{}", value / std::pow(10.0, decade), power_of_ten(static_cast<int>(decade)));
+}
+
+ReadyAxis ready(const Axis& axis, int wanted) {
+  ReadyAxis result{axis, {}, {}, ""};
+  if (axis.scale == Scale::logarithmic) {
+    const Ticks ticks = logarithmic_ticks(axis.range);
+    for (const double t : ticks.major) result.labels.emplace_back(t, log_label(t));
+    result.minor = ticks.minor;
+  } else {
+    const Ticks ticks = linear_ticks(axis.range, wanted);
+    const double largest = std::max(std::abs(axis.range.lower), std::abs(axis.range.upper));
+    const double step = ticks.major.size() > 1 ? ticks.major[1] - ticks.major[0] : largest;
+    int exponent = 0;
+    if (largest < 0.02 || largest >= 20000.0) exponent = static_cast<int>(std::floor(std::log10(largest) + 1e-9));
+    const double unit = std::pow(10.0, exponent);
+    for (const double t : ticks.major) result.labels.emplace_back(t, tick_label(t / unit, step / unit));
+    if (exponent != 0) result.multiplier = "×" + power_of_ten(exponent);
+    result.minor = ticks.minor;
+  }
+  if (!axis.ticks.empty()) {
+    result.labels = axis.ticks;
+    result.multiplier.clear();
+    if (axis.scale == Scale::linear) result.minor.clear();
+  }
+  return result;
+}
+
+/// The x axis of a bar panel: one unit a group.
+Axis group_axis(const Panel& panel) {
+  Axis axis = panel.x;
+  axis.scale = Scale::linear;
+  axis.range = {0.0, static_cast<double>(panel.groups.size())};
+  axis.ticks.clear();
+  for (std::size_t i = 0; i < panel.groups.size(); ++i)
+    axis.ticks.emplace_back(static_cast<double>(i) + 0.5, panel.groups[i].name);
+  return axis;
+}
+
+enum class Fate { inside, outside, not_finite };
+
+Fate fate(const Panel& panel, double x, double y) {
+  if (!std::isfinite(x) || !std::isfinite(y)) return Fate::not_finite;
+  const double fx = fraction(panel.x, x), fy = fraction(panel.y, y);
+  constexpr double slack = 1e-9;
+  const bool inside = fx >= -slack && fx <= 1.0 + slack && fy >= -slack && fy <= 1.0 + slack;
+  return inside ? Fate::inside : Fate::outside;
+}
+
+/// What a panel has to say of points that its axes do not show, by label of the curve.
+std::vector<std::string> notes_on_missing_points(const Panel& panel) {
+  std::vector<std::pair<std::string, std::pair<int, int>>> counts;
+  for (const PlotCurve& curve : panel.curves) {
+    int outside = 0, not_finite = 0;
+    for (std::size_t i = 0; i < std::min(curve.x.size(), curve.y.size()); ++i) {
+      const Fate f = fate(panel, curve.x[i], curve.y[i]);
+      outside += f == Fate::outside;
+      not_finite += f == Fate::not_finite;
+    }
+    if (outside + not_finite > 0) counts.push_back({curve.label, {outside, not_finite}});
+  }
+  std::vector<std::string> notes;
+  const auto list = [&counts](auto pick) {
+    std::string text;
+    for (const auto& [label, count] : counts)
+      if (pick(count) > 0) text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", label, pick(count));
+    return text;
+  };
+  const std::string outside = list([](const auto& c) { return c.first; });
+  const std::string not_finite = list([](const auto& c) { return c.second; });
+  if (!outside.empty()) notes.push_back("Points outside the axes, marked at the edge: " + outside);
+  if (!not_finite.empty()) notes.push_back("Points that are not finite, not drawn: " + not_finite);
+  return notes;
+}
+
+/// A panel measured and placed.
+struct Placed {
+  const Panel* panel = nullptr;
+  ReadyAxis x, y;
+  std::vector<std::string> notes;
+  double left_room = 0.0, right_room = 0.0, top_room = 0.0, bottom_room = 0.0;
+  double notes_height = 0.0;
+  Rectangle frame;
+
+  Point at(double x_value, double y_value) const {
+    return {frame.left + fraction(x.axis, x_value) * frame.width(),
+            frame.bottom - fraction(y.axis, y_value) * frame.height()};
+  }
+};
+
+double widest_label(const ReadyAxis& axis) {
+  double widest = 0.0;
+  for (const auto& [value, label] : axis.labels) widest = std::max(widest, text_width(label));
+  return widest;
+}
+
+bool labels_fit(const ReadyAxis& axis, double length) {
+  double sum = 0.0;
+  for (const auto& [value, label] : axis.labels) sum += text_width(label) + 7.0;
+  return sum <= length;
+}
+
+Placed measured(const Panel& panel, double frame_guess, double aspect) {
+  Placed placed;
+  placed.panel = &panel;
+  const Axis x_axis = panel.groups.empty() ? panel.x : group_axis(panel);
+  for (int wanted = 6; wanted >= 2; --wanted) {
+    placed.x = ready(x_axis, wanted);
+    if (labels_fit(placed.x, frame_guess)) break;
+  }
+  placed.y = ready(panel.y, std::clamp(static_cast<int>(frame_guess * aspect / 28.0), 3, 7));
+  placed.notes = panel.notes;
+  for (std::string& note : notes_on_missing_points(panel)) placed.notes.push_back(std::move(note));
+  placed.left_room = (panel.y.label.empty() ? 0.0 : line_height + 3.0) + widest_label(placed.y) + tick_gap;
+  double label_width = 0.0;
+  for (const LevelLine& level : panel.levels) label_width = std::max(label_width, text_width(level.label));
+  placed.right_room = std::max(6.0, label_width > 0.0 ? label_width + 4.0 : 0.0);
+  placed.top_room = 17.0;
+  placed.bottom_room = tick_gap + line_height + (panel.x.label.empty() ? 0.0 : line_height + 2.0);
+  return placed;
+}
+
+TextStyle note_style(double width) {
+  TextStyle style = text_style(Horizontal::left, Vertical::top, type_size, muted);
+  style.wrap_width = width;
+  return style;
+}
+
+double notes_height(const std::vector<std::string>& notes, double width) {
+  double height = 0.0;
+  for (const std::string& note : notes) height += Canvas::measure(note, note_style(width)).height() + 1.0;
+  return notes.empty() ? 0.0 : height + 4.0;
+}
+
+// ---- the legend -----------------------------------------------------------------------------------------------
+
+struct LegendEntry {
+  enum class Kind { curve, bar, level } kind = Kind::curve;
+  std::string label;
+  Look look;
+  Stroke stroke;
+};
+
+std::vector<LegendEntry> legend_of(const Plot& plot) {
+  std::vector<LegendEntry> entries;
+  const auto add = [&entries](LegendEntry entry) {
+    if (entry.label.empty()) return;
+    for (const LegendEntry& known : entries)
+      if (known.label == entry.label) return;
+    entries.push_back(std::move(entry));
+  };
+  for (const Panel& panel : plot.panels) {
+    for (const PlotCurve& curve : panel.curves) add({LegendEntry::Kind::curve, curve.label, curve.look, {}});
+    for (const BarSeries& series : panel.bar_series) add({LegendEntry::Kind::bar, series.label, series.look, {}});
+  }
+  for (const Panel& panel : plot.panels)
+    for (const LevelLine& level : panel.levels) add({LegendEntry::Kind::level, level.legend, {}, level.stroke});
+  return entries;
+}
+
+constexpr double legend_sample = 22.0;
+constexpr double legend_gap = 18.0;
+constexpr double legend_row = 14.0;
+
+/// Entries a row, as many as fit.
+std::vector<std::vector<LegendEntry>> legend_rows(const std::vector<LegendEntry>& entries, double width) {
+  std::vector<std::vector<LegendEntry>> rows;
+  double used = 0.0;
+  for (const LegendEntry& entry : entries) {
+    const double needed = legend_sample + 5.0 + text_width(entry.label) + legend_gap;
+    if (rows.empty() || used + needed > width + legend_gap) {
+      rows.emplace_back();
+      used = 0.0;
+    }
+    rows.back().push_back(entry);
+    used += needed;
+  }
+  return rows;
+}
+
+MarkerStyle marker_of(const Look& look) {
+  return {look.marker, look.marker_size, look.filled ? look.color : white, look.color, 0.75};
+}
+
+void fill_bar(Canvas& canvas, const Rectangle& box, const Look& look, const Rectangle& clip) {
+  if (box.height() <= 0.0 || box.width() <= 0.0) return;
+  using Pattern = Look::Pattern;
+  canvas.rectangle(box, look.pattern == Pattern::solid   ? look.color
+                        : look.pattern == Pattern::light ? tint(look.color, 0.62)
+                                                         : white);
+  if (look.pattern == Pattern::hatched) {
+    const Rectangle cut{std::max(box.left, clip.left), std::max(box.top, clip.top), std::min(box.right, clip.right),
+                        std::min(box.bottom, clip.bottom)};
+    canvas.clip(cut);
+    for (double x = cut.left - cut.height(); x < cut.right; x += 3.4)
+      canvas.line({{x, cut.bottom}, {x + cut.height(), cut.top}}, {look.color, 0.8, {}});
+    canvas.clip(clip);
+  }
+  canvas.line({{box.left, box.bottom}, {box.left, box.top}, {box.right, box.top}, {box.right, box.bottom}},
+              {look.color, 0.8, {}});
+}
+
+void draw_sample(Canvas& canvas, const LegendEntry& entry, double left, double middle, const Rectangle& sheet) {
+  const double right = left + legend_sample;
+  if (entry.kind == LegendEntry::Kind::level) {
+    canvas.line({{left, middle}, {right, middle}}, entry.stroke);
+  } else if (entry.kind == LegendEntry::Kind::bar) {
+    const Rectangle box{left + 4.0, middle - 4.0, right, middle + 4.0};
+    fill_bar(canvas, box, entry.look, sheet);
+    canvas.line({{box.left, box.bottom}, {box.right, box.bottom}}, {entry.look.color, 0.8, {}});
+  } else {
+    if (entry.look.line_width > 0.0)
+      canvas.line({{left, middle}, {right, middle}}, {entry.look.color, entry.look.line_width, entry.look.dash});
+    Look larger = entry.look;
+    larger.marker_size = std::max(larger.marker_size, 4.2);
+    canvas.marker({(left + right) / 2, middle}, marker_of(larger));
+  }
+}
+
+/// Draws the rows centred from `top` down; gives the rectangle they cover.
+Rectangle draw_legend(Canvas& canvas, const std::vector<std::vector<LegendEntry>>& rows, double top) {
+  const Rectangle sheet{0.0, 0.0, canvas.width(), canvas.height()};
+  Rectangle covered{canvas.width(), top, 0.0, top + static_cast<double>(rows.size()) * legend_row};
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    double width = -legend_gap;
+    for (const LegendEntry& entry : rows[r]) width += legend_sample + 5.0 + text_width(entry.label) + legend_gap;
+    double left = (canvas.width() - width) / 2;
+    covered.left = std::min(covered.left, left);
+    covered.right = std::max(covered.right, left + width);
+    const double middle = top + (static_cast<double>(r) + 0.5) * legend_row;
+    for (const LegendEntry& entry : rows[r]) {
+      draw_sample(canvas, entry, left, middle, sheet);
+      left += legend_sample + 5.0;
+      canvas.text({left, middle}, entry.label, text_style(Horizontal::left, Vertical::middle));
+      left += text_width(entry.label) + legend_gap;
+    }
+  }
+  return covered;
+}
+
+// ---- one panel ------------------------------------------------------------------------------------------------
+
+void draw_grid(Canvas& canvas, const Placed& placed) {
+  const Rectangle& f = placed.frame;
+  for (const auto& [value, label] : placed.y.labels) {
+    const double y = placed.at(placed.x.axis.range.lower, value).y;
+    canvas.rule({f.left, y}, {f.right, y}, 0.5, grid_color);
+  }
+  if (!placed.panel->groups.empty()) return;
+  for (const auto& [value, label] : placed.x.labels) {
+    const double x = placed.at(value, placed.y.axis.range.lower).x;
+    canvas.rule({x, f.top}, {x, f.bottom}, 0.5, grid_color);
+  }
+}
+
+void draw_x_ticks(Canvas& canvas, const Placed& placed) {
+  const Rectangle& f = placed.frame;
+  const bool groups = !placed.panel->groups.empty();
+  const auto tick = [&](double value, double length) {
+    const double x = f.left + fraction(placed.x.axis, value) * f.width();
+    if (x < f.left - 0.01 || x > f.right + 0.01) return;
+    canvas.rule({x, f.bottom}, {x, f.bottom - length}, axis_width, ink);
+    canvas.rule({x, f.top}, {x, f.top + length}, axis_width, ink);
+  };
+  if (!groups)
+    for (const double value : placed.x.minor) tick(value, minor_tick);
+  for (const auto& [value, label] : placed.x.labels) {
+    if (!groups) tick(value, major_tick);
+    const double x = f.left + fraction(placed.x.axis, value) * f.width();
+    canvas.text({x, f.bottom + tick_gap + 8.0}, label, text_style(Horizontal::center, Vertical::baseline));
+  }
+  const double baseline = f.bottom + tick_gap + line_height + 10.0;
+  canvas.text({(f.left + f.right) / 2, baseline}, placed.x.axis.label,
+              text_style(Horizontal::center, Vertical::baseline));
+  canvas.text({f.right, baseline}, placed.x.multiplier, text_style(Horizontal::right, Vertical::baseline));
+}
+
+void draw_y_ticks(Canvas& canvas, const Placed& placed) {
+  const Rectangle& f = placed.frame;
+  const auto tick = [&](double value, double length) {
+    const double y = f.bottom - fraction(placed.y.axis, value) * f.height();
+    if (y < f.top - 0.01 || y > f.bottom + 0.01) return;
+    canvas.rule({f.left, y}, {f.left + length, y}, axis_width, ink);
+    canvas.rule({f.right, y}, {f.right - length, y}, axis_width, ink);
+  };
+  for (const double value : placed.y.minor) tick(value, minor_tick);
+  for (const auto& [value, label] : placed.y.labels) {
+    tick(value, major_tick);
+    const double y = f.bottom - fraction(placed.y.axis, value) * f.height();
+    canvas.text({f.left - tick_gap, y}, label, text_style(Horizontal::right, Vertical::middle));
+  }
+  TextStyle upward = text_style(Horizontal::center, Vertical::bottom);
+  upward.upward = true;
+  canvas.text({f.left - tick_gap - widest_label(placed.y) - 3.0, (f.top + f.bottom) / 2}, placed.y.axis.label, upward);
+  canvas.text({f.left - tick_gap, f.top - 6.5}, placed.y.multiplier, text_style(Horizontal::right, Vertical::baseline));
+}
+
+void draw_frame(Canvas& canvas, const Rectangle& f) {
+  canvas.rule({f.left, f.top}, {f.right, f.top}, axis_width, ink);
+  canvas.rule({f.left, f.bottom}, {f.right, f.bottom}, axis_width, ink);
+  canvas.rule({f.left, f.top}, {f.left, f.bottom}, axis_width, ink);
+  canvas.rule({f.right, f.top}, {f.right, f.bottom}, axis_width, ink);
+}
+
+/// Pulls a point onto the frame, as far inside as its mark needs.
+Point at_edge(Point p, const Rectangle& f) {
+  const double inset = edge_mark / 2;
+  const auto pulled = [inset](double v, double low, double high) {
+    return std::isnan(v) ? low : std::clamp(v, low + inset, high - inset);
+  };
+  return {pulled(p.x, f.left, f.right), pulled(p.y, f.top, f.bottom)};
+}
+
+/// A small arrowhead at the edge, pointing to where the point really is.
+void draw_edge_mark(Canvas& canvas, Point at, Point truth, const Rectangle& f, const Color& color) {
+  const double r = edge_mark / 2;
+  Point d{0.0, 0.0};
+  if (truth.y < f.top) d = {0.0, -1.0};
+  else if (truth.y > f.bottom) d = {0.0, 1.0};
+  else d = {truth.x < f.left ? -1.0 : 1.0, 0.0};
+  canvas.polygon({{at.x + r * d.x, at.y + r * d.y},
+                  {at.x - r * d.x + r * d.y, at.y - r * d.y + r * d.x},
+                  {at.x - r * d.x - r * d.y, at.y - r * d.y - r * d.x}},
+                 color);
+}
+
+void draw_curve(Canvas& canvas, const Placed& placed, const PlotCurve& curve, Layout::Panel& layout) {
+  const std::size_t count = std::min(curve.x.size(), curve.y.size());
+  std::vector<Point> path(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    path[i] = placed.at(curve.x[i], curve.y[i]);
+    // Zero on a logarithmic axis lies infinitely far out: bring it within reach of the line's clipping.
+    if (std::isfinite(curve.x[i]) && std::isfinite(curve.y[i]))
+      path[i] = {std::clamp(path[i].x, -1e7, 1e7), std::clamp(path[i].y, -1e7, 1e7)};
+  }
+  canvas.clip(placed.frame);
+  if (curve.look.line_width > 0.0) canvas.line(path, {curve.look.color, curve.look.line_width, curve.look.dash});
+  canvas.unclip();
+  std::optional<Point> last_mark;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Fate f = fate(*placed.panel, curve.x[i], curve.y[i]);
+    if (f == Fate::not_finite) {
+      ++layout.not_finite;
+    } else if (f == Fate::inside) {
+      canvas.marker(path[i], marker_of(curve.look));
+      layout.points.push_back(path[i]);
+    } else {
+      ++layout.outside;
+      const Point mark = at_edge(path[i], placed.frame);
+      layout.points.push_back(mark);
+      // A long excursion of a dense line needs no mark at every sample.
+      const bool crowded = last_mark && curve.look.marker == MarkerShape::none &&
+                           std::hypot(mark.x - last_mark->x, mark.y - last_mark->y) < edge_mark;
+      if (crowded) continue;
+      draw_edge_mark(canvas, mark, path[i], placed.frame, curve.look.color);
+      last_mark = mark;
+    }
+  }
+}
+
+/// A bar that reaches beyond the frame: a white gap across it and an arrowhead say so.
+void draw_break(Canvas& canvas, const Rectangle& bar, const Rectangle& f, const Color& color) {
+  const double y = f.top + 12.0;
+  canvas.polygon({{bar.left - 2.0, y + 3.0}, {bar.right + 2.0, y - 1.0}, {bar.right + 2.0, y + 1.5}, {bar.left - 2.0, y + 5.5}},
+                 white);
+  draw_edge_mark(canvas, {bar.center().x, f.top - 3.5}, {bar.center().x, f.top - 100.0}, f, color);
+}
+
+void write_in_bar_slot(Canvas& canvas, Point foot, const std::string& words, const Color& color, Layout::Panel& layout) {
+  TextStyle style = text_style(Horizontal::left, Vertical::middle, type_size, color);
+  style.upward = true;
+  const TextExtent extent = Canvas::measure(words, style);
+  canvas.text(foot, words, style);
+  layout.annotations.push_back({foot.x - extent.height() / 2, foot.y - extent.width, foot.x + extent.height() / 2, foot.y});
+}
+
+void draw_bars(Canvas& canvas, const Placed& placed, Layout::Panel& layout) {
+  const Panel& panel = *placed.panel;
+  const Rectangle& f = placed.frame;
+  const double group_width = f.width() / static_cast<double>(panel.groups.size());
+  const double slot = group_width * 0.78 / static_cast<double>(std::max<std::size_t>(1, panel.bar_series.size()));
+  const double bar_width = std::min(slot * 0.84, 26.0);
+  for (std::size_t g = 0; g < panel.groups.size(); ++g) {
+    const BarGroup& group = panel.groups[g];
+    for (std::size_t s = 0; s < std::min(panel.bar_series.size(), group.values.size()); ++s) {
+      const double offset = static_cast<double>(s) - (static_cast<double>(panel.bar_series.size()) - 1.0) / 2;
+      const double x = f.left + (static_cast<double>(g) + 0.5) * group_width + offset * slot;
+      const Look& look = panel.bar_series[s].look;
+      const double value = group.values[s];
+      if (!std::isfinite(value)) {
+        ++layout.not_finite;
+        const std::string why = s < group.absences.size() ? group.absences[s] : "";
+        write_in_bar_slot(canvas, {x, f.bottom - 4.0}, why.empty() ? "no value" : why, look.color, layout);
+        continue;
+      }
+      const double height = fraction(panel.y, value);
+      if (height <= 0.0) {
+        ++layout.outside;
+        write_in_bar_slot(canvas, {x, f.bottom - 4.0}, value == 0.0 ? "0" : fmt::format("{:.1g}", value), look.color,
+                          layout);
+        continue;
+      }
+      const Rectangle bar{x - bar_width / 2, f.bottom - std::min(height, 1.0) * f.height(), x + bar_width / 2, f.bottom};
+      canvas.clip(f);
+      fill_bar(canvas, height > 1.0 ? Rectangle{bar.left, bar.top - 4.0, bar.right, bar.bottom} : bar, look, f);
+      canvas.unclip();
+      layout.points.push_back({x, bar.top});
+      if (height > 1.0) {
+        ++layout.outside;
+        draw_break(canvas, bar, f, look.color);
+      }
+    }
+  }
+}
+
+void draw_levels(Canvas& canvas, const Placed& placed) {
+  const Rectangle& f = placed.frame;
+  std::vector<std::pair<double, std::string>> labels;
+  for (const LevelLine& level : placed.panel->levels) {
+    const double at = fraction(placed.y.axis, level.value);
+    if (!(at >= 0.0 && at <= 1.0)) continue;
+    const double y = f.bottom - at * f.height();
+    canvas.line({{f.left, y}, {f.right, y}}, level.stroke);
+    labels.emplace_back(y, level.label);
+  }
+  std::sort(labels.begin(), labels.end());
+  double previous = -1e9;
+  for (const auto& [y, label] : labels) {
+    previous = std::max(y, previous + line_height - 1.0);
+    canvas.text({f.right + 4.0, previous}, label, text_style(Horizontal::left, Vertical::middle));
+  }
+}
+
+// ---- reference slopes -----------------------------------------------------------------------------------------
+
+/// What a panel's curves and lines cover, sampled densely.
+std::vector<Point> covered_places(const Placed& placed, const Layout::Panel& layout) {
+  std::vector<Point> places = layout.points;
+  const auto sample = [&places](Point a, Point b) {
+    const int steps = 1 + static_cast<int>(std::min(400.0, std::hypot(b.x - a.x, b.y - a.y) / 2.0));
+    for (int k = 0; k <= steps; ++k) places.push_back({a.x + (b.x - a.x) * k / steps, a.y + (b.y - a.y) * k / steps});
+  };
+  for (const PlotCurve& curve : placed.panel->curves) {
+    if (curve.look.line_width <= 0.0) continue;
+    for (std::size_t i = 0; i + 1 < std::min(curve.x.size(), curve.y.size()); ++i) {
+      const Point a = placed.at(curve.x[i], curve.y[i]), b = placed.at(curve.x[i + 1], curve.y[i + 1]);
+      if (std::isfinite(a.x + a.y + b.x + b.y)) sample(a, b);
+    }
+  }
+  for (const LevelLine& level : placed.panel->levels) {
+    const double y = placed.at(placed.x.axis.range.lower, level.value).y;
+    if (std::isfinite(y)) sample({placed.frame.left, y}, {placed.frame.right, y});
+  }
+  return places;
+}
+
+/// Finds room for a rectangle inside the frame, clear of `covered` and `taken`; nearest to the lower right corner.
+std::optional<Rectangle> empty_place(const Rectangle& frame, double width, double height,
+                                     const std::vector<Point>& covered, const std::vector<Rectangle>& taken) {
+  constexpr double clearance = 5.0, step = 4.0;
+  for (double bottom = frame.bottom - 7.0; bottom - height > frame.top + 7.0; bottom -= step)
+    for (double right = frame.right - 7.0; right - width > frame.left + 7.0; right -= step) {
+      const Rectangle place{right - width, bottom - height, right, bottom};
+      const Rectangle grown = place.grown(clearance);
+      const bool free = std::none_of(covered.begin(), covered.end(), [&](Point p) { return grown.contains(p); }) &&
+                        std::none_of(taken.begin(), taken.end(), [&](const Rectangle& r) { return grown.intersects(r); });
+      if (free) return place;
+    }
+  return std::nullopt;
+}
+
+/// A right triangle of slope `order` with its legs labelled, if there is room for it.
+void draw_slope(Canvas& canvas, const Placed& placed, double order, const std::vector<Point>& covered,
+                Layout::Panel& layout) {
+  const Rectangle& f = placed.frame;
+  const double x_decade = f.width() / std::log10(placed.x.axis.range.upper / placed.x.axis.range.lower);
+  const double y_decade = f.height() / std::log10(placed.y.axis.range.upper / placed.y.axis.range.lower);
+  const double decades = std::min(0.35, 0.5 * f.height() / (order * y_decade));
+  const double run = decades * x_decade, rise = decades * order * y_decade;
+  const std::string label = fmt::format("{:g}", order);
+  const double label_width = text_width(label);
+  const auto place = empty_place(f, run + label_width + 5.0, rise + 12.0, covered, layout.annotations);
+  if (!place) return;
+  layout.annotations.push_back(*place);
+  const Point a{place->left, place->top + rise}, b{place->left + run, place->top + rise}, c{b.x, place->top};
+  canvas.polygon({a, b, c}, {0.93, 0.93, 0.93, 1.0});
+  canvas.line({a, b, c, a, b}, {muted, 0.7, {}});
+  canvas.text({(a.x + b.x) / 2, a.y + 3.0 + 6.5}, "1", text_style(Horizontal::center, Vertical::baseline, type_size, muted));
+  canvas.text({b.x + 4.0, (b.y + c.y) / 2}, label, text_style(Horizontal::left, Vertical::middle, type_size, muted));
+}
+
+void draw_notes(Canvas& canvas, const Placed& placed, double left, double width) {
+  double top = placed.frame.bottom + placed.bottom_room + 3.0;
+  for (const std::string& note : placed.notes) {
+    const TextStyle style = note_style(width);
+    canvas.text({left, top}, note, style);
+    top += Canvas::measure(note, style).height() + 1.0;
+  }
+}
+
+Layout::Panel draw_panel(Canvas& canvas, const Placed& placed, std::size_t number, bool tagged, double notes_left,
+                         double notes_width) {
+  Layout::Panel layout;
+  layout.frame = placed.frame;
+  draw_grid(canvas, placed);
+  if (!placed.panel->groups.empty()) draw_bars(canvas, placed, layout);
+  draw_levels(canvas, placed);
+  draw_frame(canvas, placed.frame);
+  draw_x_ticks(canvas, placed);
+  draw_y_ticks(canvas, placed);
+  for (const PlotCurve& curve : placed.panel->curves) draw_curve(canvas, placed, curve, layout);
+  if (!placed.panel->reference_slopes.empty()) {
+    const std::vector<Point> covered = covered_places(placed, layout);
+    for (const double order : placed.panel->reference_slopes) draw_slope(canvas, placed, order, covered, layout);
+  }
+  const std::string tag = tagged ? fmt::format("<b>({})</b> ", static_cast<char>('a' + number % 26)) : "";
+  canvas.text({placed.frame.left, placed.frame.top - 6.5}, tag + placed.panel->title,
+              text_style(Horizontal::left, Vertical::baseline, title_size));
+  draw_notes(canvas, placed, notes_left, notes_width);
+  return layout;
+}
+
+}  // namespace
+
+std::string power_of_ten(int exponent) {
+  if (exponent == 0) return "1";
+  if (exponent == 1) return "10";
+  return fmt::format("10<sup>{}{}</sup>", exponent < 0 ? "−" : "", std::abs(exponent));
+}
+
+std::string tick_label(double value, double step) {
+  int decimals = 0;
+  for (double s = std::abs(step); decimals < 8 && s > 0.0 && std::abs(s - std::round(s)) > 1e-6 * std::max(1.0, s); s *= 10.0)
+    ++decimals;
+  const std::string digits = fmt::format("{:.{}f}", std::abs(value), decimals);
+  const bool zero = digits.find_first_not_of("0.") == std::string::npos;
+  return (value < 0.0 && !zero ? "−" : "") + digits;
+}
+
+Ticks linear_ticks(const Range& range, int wanted) {
+  Ticks ticks;
+  const double span = range.upper - range.lower;
+  if (!(span > 0.0) || !std::isfinite(span)) return ticks;
+  const double raw = span / std::max(1, wanted);
+  const double power = std::pow(10.0, std::floor(std::log10(raw)));
+  double step = 10.0 * power;
+  int parts = 5;
+  for (const auto& [multiple, division] : {std::pair{1.0, 5}, {2.0, 4}, {2.5, 5}, {5.0, 5}})
+    if (multiple * power >= raw * (1.0 - 1e-9)) {
+      step = multiple * power;
+      parts = division;
+      break;
+    }
+  const double minor = step / parts;
+  const double slack = 1e-9 * span;
+  const auto first = static_cast<long long>(std::ceil((range.lower - slack) / minor));
+  const auto last = static_cast<long long>(std::floor((range.upper + slack) / minor));
+  for (long long k = first; k <= last; ++k) {
+    if (k % parts == 0) ticks.major.push_back(static_cast<double>(k / parts) * step);
+    else ticks.minor.push_back(static_cast<double>(k) * minor);
+  }
+  return ticks;
+}
+
+Ticks logarithmic_ticks(const Range& range, int most) {
+  Ticks ticks;
+  if (!(range.lower > 0.0 && range.upper > range.lower && std::isfinite(range.upper))) return ticks;
+  const double lower = range.lower * (1.0 - 1e-9), upper = range.upper * (1.0 + 1e-9);
+  const int first = static_cast<int>(std::ceil(std::log10(lower))), last = static_cast<int>(std::floor(std::log10(upper)));
+  const int decades = last - first + 1;
+  const int stride = std::max(1, (decades + most - 1) / most);
+  for (int exponent = first - 1; exponent <= last; ++exponent) {
+    const double decade = std::pow(10.0, exponent);
+    for (int k = 1; k <= 9; ++k) {
+      const double value = k * decade;
+      if (value < lower || value > upper) continue;
+      const bool labelled = k == 1 ? exponent % stride == 0 : decades < 2 && (k == 2 || k == 5);
+      if (labelled) ticks.major.push_back(value);
+      else if (stride == 1 || k == 1) ticks.minor.push_back(value);
+    }
+  }
+  return ticks;
+}
+
+Look look_of_series(int n) {
+  using Pattern = Look::Pattern;
+  // Okabe and Ito's colours; shape, dash and hatching differ as well.
+  static const std::vector<Look> looks{
+      {{0.835, 0.369, 0.0, 1.0}, 1.2, {5.0, 2.2}, MarkerShape::circle, 4.4, false, Pattern::hatched},
+      {{0.0, 0.447, 0.698, 1.0}, 1.2, {6.0, 2.0, 1.4, 2.0}, MarkerShape::square, 3.6, false, Pattern::light},
+      {{0.0, 0.52, 0.38, 1.0}, 1.2, {}, MarkerShape::diamond, 3.2, true, Pattern::solid},
+      {{0.70, 0.36, 0.55, 1.0}, 1.2, {1.4, 1.8}, MarkerShape::triangle, 4.0, false, Pattern::hatched},
+      {{0.80, 0.55, 0.0, 1.0}, 1.2, {9.0, 2.5}, MarkerShape::cross, 4.0, false, Pattern::light},
+      {{0.20, 0.20, 0.20, 1.0}, 1.2, {3.0, 1.5}, MarkerShape::triangle, 4.0, true, Pattern::solid},
+  };
+  return looks[static_cast<std::size_t>(((n % 6) + 6) % 6)];
+}
+
+Picture draw(const Plot& plot, double pixels_per_point) {
+  const std::size_t columns = static_cast<std::size_t>(std::max(1, plot.columns));
+  const std::size_t rows = (plot.panels.size() + columns - 1) / columns;
+  const double guess = (plot.width - 2 * outer_margin) / static_cast<double>(columns) - 45.0;
+  std::vector<Placed> placed;
+  for (const Panel& panel : plot.panels) placed.push_back(measured(panel, guess, plot.frame_aspect));
+
+  // All frames are equally wide; a column has the room its widest labels need.
+  std::vector<double> left(columns, 0.0), right(columns, 0.0);
+  for (std::size_t i = 0; i < placed.size(); ++i) {
+    left[i % columns] = std::max(left[i % columns], placed[i].left_room);
+    right[i % columns] = std::max(right[i % columns], placed[i].right_room);
+  }
+  double free_width = plot.width - 2 * outer_margin - column_gap * (static_cast<double>(columns) - 1.0);
+  for (std::size_t c = 0; c < columns; ++c) free_width -= left[c] + right[c];
+  const double frame_width = std::max(40.0, free_width / static_cast<double>(columns));
+  const double frame_height = frame_width * plot.frame_aspect;
+
+  double top = outer_margin;
+  for (std::size_t r = 0; r < rows; ++r) {
+    double x = outer_margin, tallest_notes = 0.0, above = 0.0, below = 0.0;
+    for (std::size_t i = r * columns; i < std::min(placed.size(), (r + 1) * columns); ++i) {
+      above = std::max(above, placed[i].top_room);
+      below = std::max(below, placed[i].bottom_room);
+      placed[i].notes_height = notes_height(placed[i].notes, left[i % columns] + frame_width);
+      tallest_notes = std::max(tallest_notes, placed[i].notes_height);
+    }
+    for (std::size_t c = 0; c < columns && r * columns + c < placed.size(); ++c) {
+      Placed& p = placed[r * columns + c];
+      p.frame = {x + left[c], top + above, x + left[c] + frame_width, top + above + frame_height};
+      x += left[c] + frame_width + right[c] + column_gap;
+    }
+    top += above + frame_height + below + tallest_notes + row_gap;
+  }
+  const auto legend = legend_rows(legend_of(plot), plot.width - 2 * outer_margin);
+  const double legend_top = top - 4.0;
+  if (!legend.empty()) top = legend_top + static_cast<double>(legend.size()) * legend_row + 6.0;
+  if (!plot.stamp.empty()) top += stamp_size + 3.0;
+
+  Picture picture{Canvas(plot.width, top + 2.0, pixels_per_point), {}};
+  for (std::size_t i = 0; i < placed.size(); ++i)
+    picture.layout.panels.push_back(draw_panel(picture.canvas, placed[i], i, placed.size() > 1,
+                                               placed[i].frame.left - left[i % columns],
+                                               left[i % columns] + frame_width));
+  if (!legend.empty()) picture.layout.legend = draw_legend(picture.canvas, legend, legend_top);
+  picture.canvas.text({plot.width - outer_margin, picture.canvas.height() - 4.0}, plot.stamp,
+                      text_style(Horizontal::right, Vertical::baseline, stamp_size, {0.55, 0.55, 0.55, 1.0}));
+  return picture;
+}
+
+}  // namespace mpm::reports
