@@ -39,7 +39,7 @@ struct Selector {
 
 struct Gate {
   std::string id;
-  std::string metric;  ///< a name `metrics()` of vv/norms.hpp knows
+  std::string metric;  ///< a name in `metric_catalogue()` of vv/norms.hpp
   Statistic statistic = Statistic::value;
   std::string across;  ///< JSON pointer of the refined parameter, for the series statistics; else empty
   std::vector<Selector> where;
@@ -102,7 +102,14 @@ struct Case {
   Json text;
 };
 
-/// Reads, validates (against vv/case.schema.json too) and expands a case file. Throws CaseError.
+/// Reads, validates (against vv/case.schema.json too) and expands a case file. Throws CaseError for the first
+/// thing wrong with the file, with any scene it sweeps over, or with a gate, probe or figure it asks for.
+///
+/// The scene must be valid both as written and with every combination of swept values put in. The runs come in
+/// the order of the sweep, the last axis varying fastest.
 Case read_case(const std::filesystem::path& file);
+
+/// As `read_case`, for a text already in memory; `file` only names it in messages and in the result.
+Case parse_case(const std::string& text, const std::filesystem::path& file);
 
 }  // namespace mpm::vv

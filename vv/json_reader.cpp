@@ -138,10 +138,14 @@ std::string describe(const Json& value) {
   if (value.is_object()) return value.empty() ? "an empty object" : "an object";
   if (value.is_array() && value.empty()) return "an empty array";
   if (value.is_array()) return "an array of " + std::to_string(value.size());
-  constexpr std::size_t longest = 80;
   // The dump escapes line breaks and replaces bytes that are no text, so that a message stays one line.
-  std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
-  return text.size() <= longest ? text : text.substr(0, longest) + "...";
+  const std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
+  constexpr std::size_t longest = 80;
+  if (text.size() <= longest) return text;
+  std::size_t end = longest;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80)
+    --end;  // keep UTF-8 letters whole
+  return text.substr(0, end) + "...";
 }
 
 std::string listed(const std::vector<std::string>& names) {

@@ -48,14 +48,11 @@ const KindEntry& entry_of(QuantityKind kind) {
   throw std::logic_error("a quantity kind without units");
 }
 
-/// `text` in quotes, on one line, and cut where it gets too long to read.
+/// `text` in quotes, in plain letters on one line, and cut where it gets too long to read.
 std::string quoted(std::string_view text) {
   constexpr std::size_t longest = 60;
   std::string result = "\"";
-  for (const char c : text.substr(0, longest)) {
-    const bool control = static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
-    result += control ? '?' : c;
-  }
+  for (const char c : text.substr(0, longest)) result += c >= ' ' && c <= '~' ? c : '?';
   return result + (text.size() > longest ? "...\"" : "\"");
 }
 
