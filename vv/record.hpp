@@ -2,7 +2,8 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <optional>
+#include <functional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 namespace mpm::vv {
 
 /// The state at the end of a run, one entry per particle in particle order; SI units, tension positive.
+/// Of a quantity with several components it holds the one along the column.
 struct Profile {
   std::vector<double> initial_position;  ///< X [m]
   std::vector<double> position;          ///< x [m]
@@ -42,20 +44,60 @@ struct Record {
   std::string input_hash;    ///< of the resolved scene and probes
   std::string program_hash;  ///< of the program that ran it
   std::string revision;      ///< of the source tree that program was built from
-  Outcome outcome;
-  double time_step = 0.0;  ///< [s]
-  double end_time = 0.0;   ///< [s]
+  int threads = 1;           ///< of the pool the run was part of; the run itself uses one
+  std::string failure;       ///< why there is no result at all (an exception's text); empty when there is one
+  Outcome outcome;           ///< of a run with a `failure` it says only that it is not completed
+  double time_step = 0.0;    ///< [s]
+  double end_time = 0.0;     ///< [s]
   double unbalanced_force_ratio = 0.0;
   double kinetic_energy_ratio = 0.0;
   std::int64_t cell_crossings = 0;    ///< particle centres that changed cell, counted every step
   double relative_mass_change = 0.0;  ///< of the sum over the particles, end against start
   std::string digest;                 ///< of the bits of the final state; equal digests mean equal bits
+  std::string repeat_digest;  ///< the same of the repeat on another number of threads; empty without one
   Profile profile;
   std::vector<History> histories;
   Cost cost;
+
+  /// The run ended where it was meant to: its final state can be judged.
+  bool completed() const { return failure.empty() && outcome.completed(); }
 };
 
-Json to_json(const Record&);
-Record record_from_json(const Json&);
+/// How a run ended, for a person: "run ended outside_grid at step 123, t = 0.5 s, particle 49, value 1.04".
+std::string ending_of(const Record& record);
+
+/// Every number comes back with the same bits; NaN and infinities travel as "nan", "inf" and "-inf".
+Json to_json(const Record& record);
+
+/// The inverse of `to_json`. Throws std::exception for anything that is not a whole record.
+Record record_from_json(const Json& json);
+
+/// Called now and then while a run goes on, with the particle-steps done since the last call. False abandons
+/// the run.
+using Pulse = std::function<bool(std::int64_t particle_steps)>;
+
+/// A run was abandoned because its pulse asked for it.
+class Abandoned : public std::runtime_error {
+ public:
+  Abandoned() : std::runtime_error("the run was abandoned") {}
+};
+
+/// Runs one request of a case to its end and records it, probes included: each samples the first step, the
+/// step nearest to every multiple of its interval, and the last step. `cost.wall_seconds` covers the steps
+/// only. Throws SceneError, std::bad_alloc, and Abandoned when `pulse` says so.
+Record simulate(const Case& definition, const RunRequest& request, const Pulse& pulse = {});
+
+/// Hash of all that decides what a run computes and what is kept of it; 16 hexadecimal digits.
+std::string input_hash(const RunRequest& request, const std::vector<HistoryProbe>& probes);
+
+/// Hash of the program that is running; 16 hexadecimal digits, read once.
+std::string program_hash();
+
+/// Hash of a text; 16 hexadecimal digits [FNV-1a, 64 bit].
+std::string hash_of(const std::string& text);
+
+/// Replaces the file as a whole: whoever reads `path` sees the old text or the new one, never a part, even
+/// when the machine stops in between. Throws std::system_error and leaves nothing behind.
+void write_atomically(const std::filesystem::path& path, const std::string& text);
 
 }  // namespace mpm::vv

@@ -12,8 +12,8 @@ namespace mpm::vv {
 
 /// One curve exactly as it was judged or as the exact solution gives it; SI units.
 struct Curve {
-  std::string name;      ///< stress, displacement, stress_error, or a probe's id
-  std::string source;    ///< "run", or the reference solution's name
+  std::string name;       ///< stress, displacement, stress_error, or a probe's id
+  std::string source;     ///< "run", or the reference solution's name
   std::vector<double> x;  ///< initial height X [m], current height x [m] or time [s]: see `x_name`
   std::vector<double> y;
   std::string x_name;  ///< position, initial_position or time
@@ -22,16 +22,16 @@ struct Curve {
 enum class GateStatus {
   pass,
   fail,
-  red_as_expected,    ///< a must-fail control that did turn red
-  unexpectedly_green, ///< a must-fail control that stayed green: counts as a failure
+  red_as_expected,     ///< a must-fail control that did turn red
+  unexpectedly_green,  ///< a must-fail control that stayed green: counts as a failure
 };
 
 /// A gate applied to one run or one series of runs.
 struct GateResult {
   std::string id, metric, statistic, basis, reason;
-  std::string scope;     ///< the runs it was applied to, for a person: "50G, cpgimp"
-  double value = 0.0;    ///< NaN when it could not be measured; then `detail` says why and the gate is red
-  std::string op;        ///< "<=" or ">="
+  std::string scope;   ///< the runs it was applied to, for a person: "50G, cpgimp"
+  double value = 0.0;  ///< NaN when it could not be measured; then `detail` says why and the gate is red
+  std::string op;      ///< "<=" or ">="
   double threshold = 0.0;
   bool must_fail = false;
   GateStatus status = GateStatus::fail;
@@ -42,16 +42,17 @@ struct GateResult {
 struct RunVerdict {
   std::vector<std::pair<std::string, Json>> parameters;
   Record record;
-  std::map<std::string, double> metrics;  ///< only finite values; a metric that could not be measured is absent
-  std::vector<Curve> curves;              ///< the run's own and the references it was judged against
+  std::map<std::string, double>
+      metrics;                ///< only finite values; a metric that could not be measured is absent
+  std::vector<Curve> curves;  ///< the run's own and the references it was judged against
   std::vector<GateResult> gates;
 };
 
 /// A metric over a refinement, with observed orders between neighbours.
 struct SeriesVerdict {
-  std::string across;   ///< JSON pointer of the refined parameter
-  std::vector<std::pair<std::string, Json>> fixed;  ///< the other parameters of the group
-  std::vector<double> cell_size;  ///< [m], from coarse to fine, one entry per run
+  std::string across;                                  ///< JSON pointer of the refined parameter
+  std::vector<std::pair<std::string, Json>> fixed;     ///< the other parameters of the group
+  std::vector<double> cell_size;                       ///< [m], from coarse to fine, one entry per run
   std::map<std::string, std::vector<double>> metrics;  ///< NaN where a run has none
   std::map<std::string, std::vector<double>> orders;   ///< observed order of each neighbouring pair
   std::vector<GateResult> gates;
@@ -59,19 +60,35 @@ struct SeriesVerdict {
 
 enum class CaseStatus { pass, fail, not_run };
 
+/// The names used in results and messages, for example "red_as_expected".
+const char* name_of(GateStatus status);
+const char* name_of(CaseStatus status);
+
+/// Swept values for a person: "50G, cpgimp, h 0.02 m"; "the run" when nothing is swept.
+std::string scope_of(const std::vector<std::pair<std::string, Json>>& parameters);
+
+/// Room between value and threshold relative to the threshold [-], positive on the side where the comparison
+/// holds; NaN without a value or with a threshold of zero.
+double margin(const GateResult& result);
+
 struct CaseVerdict {
   Case definition;
   CaseStatus status = CaseStatus::not_run;
   std::string not_run_reason;
   std::vector<RunVerdict> runs;
   std::vector<SeriesVerdict> series;
+  std::vector<GateResult> gates;  ///< those that found nothing to judge: every one a failure
 };
+
+/// Every gate result of a case: of its runs, its series and the case as a whole.
+std::vector<const GateResult*> gate_results(const CaseVerdict& verdict);
 
 struct Counts {
   int cases = 0, cases_passed = 0, cases_failed = 0, cases_not_run = 0;
   int runs = 0;
-  int gates = 0, gates_passed = 0, gates_failed = 0;        ///< of the ordinary gates
-  int controls = 0, controls_red = 0, controls_green = 0;   ///< of the must-fail controls
+  int gates = 0, gates_passed = 0, gates_failed = 0;  ///< of the ordinary gates
+  int controls = 0, controls_red = 0,
+      controls_green = 0;  ///< of the must-fail controls; green: not red as expected
 };
 
 /// All that the report says: built from records only.
@@ -79,12 +96,15 @@ struct CampaignVerdict {
   std::string revision, host, processor, compiler, build, date;
   int threads = 1;
   bool quick = false;
+  int reused = 0;  ///< runs whose stored record was still valid, repeats included
   double wall_seconds = 0.0;
   std::vector<CaseVerdict> cases;
   Counts counts() const;
   bool passed() const;  ///< every gate good, every control red, every case run
+  bool failed() const;  ///< some case failed, or none was judged; a case left out on request is no failure
 };
 
-Json to_json(const CampaignVerdict&);
+/// The content of results.json. A number that could not be measured is null, beside a detail saying why.
+Json to_json(const CampaignVerdict& verdict);
 
 }  // namespace mpm::vv

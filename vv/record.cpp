@@ -1,0 +1,509 @@
+#include "vv/record.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <bit>
+#include <cerrno>
+#include <chrono>
+#include <cmath>
+#include <cstddef>
+#include <fstream>
+#include <limits>
+#include <numeric>
+#include <system_error>
+
+#include "vv/revision.hpp"
+
+namespace mpm::vv {
+namespace {
+
+constexpr const char* record_schema = "mpmvv-record/1";
+constexpr std::int64_t particle_steps_per_pulse = 1
+                                                  << 16;  // a few milliseconds: prompt, yet too rare to cost
+
+/// The component of a vector or stress that one-number profiles and probes hold.
+constexpr std::size_t along_column = 0;
+
+class Fnv1a {
+ public:
+  void add_byte(unsigned char byte) { state_ = (state_ ^ byte) * 0x100000001b3u; }
+  void add(std::uint64_t word) {
+    for (int shift = 0; shift < 64; shift += 8) add_byte(static_cast<unsigned char>(word >> shift));
+  }
+  void add(const std::vector<double>& values) {
+    add(values.size());
+    for (double value : values) add(std::bit_cast<std::uint64_t>(value));
+  }
+  void add(const char* text, std::size_t length) {
+    for (std::size_t i = 0; i < length; ++i) add_byte(static_cast<unsigned char>(text[i]));
+  }
+  std::string digits() const { return fmt::format("{:016x}", state_); }
+
+ private:
+  std::uint64_t state_ = 0xcbf29ce484222325u;
+};
+
+// ---- JSON ----
+
+Json number(double value) {
+  if (std::isfinite(value)) return value;
+  if (std::isnan(value)) return "nan";
+  return value > 0 ? "inf" : "-inf";
+}
+
+double number_from(const Json& json) {
+  if (json.is_number()) return json.get<double>();
+  const auto text = json.get<std::string>();
+  if (text == "nan") return std::numeric_limits<double>::quiet_NaN();
+  if (text == "inf") return std::numeric_limits<double>::infinity();
+  if (text == "-inf") return -std::numeric_limits<double>::infinity();
+  throw std::runtime_error("not a number: " + text);
+}
+
+Json numbers(const std::vector<double>& values) {
+  Json json = Json::array();
+  for (double value : values) json.push_back(number(value));
+  return json;
+}
+
+std::vector<double> numbers_from(const Json& json) {
+  if (!json.is_array()) throw std::runtime_error("not an array of numbers");
+  std::vector<double> values;
+  values.reserve(json.size());
+  for (const Json& entry : json) values.push_back(number_from(entry));
+  return values;
+}
+
+Ending ending_from(const std::string& name) {
+  for (Ending ending : {Ending::reached_time, Ending::at_rest, Ending::not_at_rest, Ending::not_finite,
+                        Ending::inverted, Ending::outside_grid, Ending::domain_too_large}) {
+    if (name == name_of(ending)) return ending;
+  }
+  throw std::runtime_error("unknown ending: " + name);
+}
+
+/// The fields of a profile and their names, once for both directions.
+template <class ProfileType, class Visit>
+void for_each_field(ProfileType& profile, Visit visit) {
+  visit("initial_position", profile.initial_position);
+  visit("position", profile.position);
+  visit("stress", profile.stress);
+  visit("volume", profile.volume);
+  visit("initial_volume", profile.initial_volume);
+  visit("mass", profile.mass);
+  visit("half_size", profile.half_size);
+}
+
+Json profile_to_json(const Profile& profile) {
+  Json json = Json::object();
+  for_each_field(profile, [&](const char* name, const auto& values) { json[name] = numbers(values); });
+  return json;
+}
+
+Profile profile_from_json(const Json& json) {
+  Profile profile;
+  for_each_field(profile, [&](const char* name, auto& values) {
+    values = numbers_from(json.at(name));
+    if (values.size() != profile.initial_position.size())
+      throw std::runtime_error("profile of unequal lengths");
+  });
+  return profile;
+}
+
+Json outcome_to_json(const Outcome& outcome) {
+  return {{"ending", name_of(outcome.ending)},
+          {"step", outcome.step},
+          {"time", number(outcome.time)},
+          {"particle", outcome.particle},
+          {"value", number(outcome.value)}};
+}
+
+Outcome outcome_from_json(const Json& json) {
+  return {.ending = ending_from(json.at("ending").get<std::string>()),
+          .step = json.at("step").get<std::int64_t>(),
+          .time = number_from(json.at("time")),
+          .particle = json.at("particle").get<std::int64_t>(),
+          .value = number_from(json.at("value"))};
+}
+
+Json histories_to_json(const std::vector<History>& histories) {
+  Json json = Json::array();
+  for (const History& history : histories) {
+    json.push_back({{"id", history.id},
+                    {"quantity", history.quantity},
+                    {"time", numbers(history.time)},
+                    {"value", numbers(history.value)}});
+  }
+  return json;
+}
+
+std::vector<History> histories_from_json(const Json& json) {
+  std::vector<History> histories;
+  for (const Json& entry : json) {
+    histories.push_back({.id = entry.at("id").get<std::string>(),
+                         .quantity = entry.at("quantity").get<std::string>(),
+                         .time = numbers_from(entry.at("time")),
+                         .value = numbers_from(entry.at("value"))});
+    if (histories.back().time.size() != histories.back().value.size()) {
+      throw std::runtime_error("history of unequal lengths");
+    }
+  }
+  return histories;
+}
+
+// ---- probes ----
+
+/// One component of every particle, from a field stored particle by particle.
+std::vector<double> component_of(const std::vector<double>& field, std::size_t particles,
+                                 std::size_t component) {
+  const std::size_t stride = particles == 0 ? 1 : field.size() / particles;
+  std::vector<double> values(particles);
+  for (std::size_t p = 0; p < particles; ++p) values[p] = field[p * stride + component];
+  return values;
+}
+
+std::size_t nearest_particle(const ParticleFields& fields, const PerAxis& place) {
+  const auto dimension = static_cast<std::size_t>(fields.dimension);
+  const std::size_t particles = fields.mass.size();
+  std::size_t nearest = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t p = 0; p < particles; ++p) {
+    double distance = 0.0;
+    for (std::size_t axis = 0; axis < dimension; ++axis) {
+      const double offset = fields.initial_position[p * dimension + axis] - place[axis];
+      distance += offset * offset;
+    }
+    if (distance < least) {
+      least = distance;
+      nearest = p;
+    }
+  }
+  return nearest;
+}
+
+double quantity_at(const ParticleFields& fields, const std::string& quantity, std::size_t particle,
+                   std::size_t component) {
+  const std::size_t particles = fields.mass.size();
+  const auto entry = [&](const std::vector<double>& field) {
+    return field[particle * (field.size() / particles) + component];
+  };
+  if (quantity == "displacement") return entry(fields.position) - entry(fields.initial_position);
+  if (quantity == "velocity") return entry(fields.velocity);
+  if (quantity == "stress") return entry(fields.stress);
+  throw std::invalid_argument("a history probe cannot record '" + quantity + "'");
+}
+
+/// A probe at work: which particle it follows and when it is due.
+class Sampler {
+ public:
+  Sampler(const HistoryProbe& probe, const ParticleFields& start)
+      : history_{.id = probe.id, .quantity = probe.quantity, .time = {}, .value = {}},
+        every_(probe.every),
+        particle_(nearest_particle(start, probe.at)) {
+    if (!(every_ > 0.0))
+      throw std::invalid_argument("the sampling interval of a history probe must be positive");
+    if (start.mass.empty()) throw std::invalid_argument("a history probe needs a particle");
+  }
+
+  /// The step that ends at `time` is the nearest to the next multiple of the interval, or past it.
+  bool due(double time, double time_step) const { return time + 0.5 * time_step >= next_; }
+
+  void sample(const ParticleFields& fields, double time, double time_step) {
+    if (!history_.time.empty() && history_.time.back() == time) return;
+    history_.time.push_back(time);
+    history_.value.push_back(quantity_at(fields, history_.quantity, particle_, along_column));
+    next_ = every_ * (std::floor((time + 0.5 * time_step) / every_) + 1.0);
+  }
+
+  History history() && { return std::move(history_); }
+
+ private:
+  History history_;
+  double every_;
+  std::size_t particle_;
+  double next_ = 0.0;
+};
+
+/// Steps a simulation to its end, with its probes, and measures what the steps cost.
+class Recorder {
+ public:
+  Recorder(const Case& definition, const RunRequest& request, const Pulse& pulse)
+      : simulation_(request.scene), pulse_(pulse), start_(simulation_.particles()) {
+    for (const HistoryProbe& probe : definition.probes) samplers_.emplace_back(probe, start_);
+    for (Sampler& sampler : samplers_) sampler.sample(start_, simulation_.time(), simulation_.time_step());
+  }
+
+  Record run() {
+    const std::int64_t steps_per_pulse = std::max<std::int64_t>(
+        1, particle_steps_per_pulse / std::max<std::int64_t>(1, simulation_.particle_count()));
+    while (advance(steps_per_pulse)) {
+      sample_due();
+      beat();
+    }
+    beat();
+    return result();
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  /// Steps until a probe is due, a pulse is, or the run has ended (then false). The clock runs only here.
+  bool advance(std::int64_t most_steps) {
+    const auto began = Clock::now();
+    bool going_on = true;
+    for (std::int64_t step = 0; step < most_steps && going_on && !sample_is_due(); ++step) {
+      going_on = simulation_.advance();
+    }
+    wall_ += Clock::now() - began;
+    return going_on;
+  }
+
+  bool sample_is_due() const {
+    for (const Sampler& sampler : samplers_) {
+      if (sampler.due(simulation_.time(), simulation_.time_step())) return true;
+    }
+    return false;
+  }
+
+  void sample_due() {
+    if (!sample_is_due()) return;
+    const ParticleFields fields = simulation_.particles();
+    for (Sampler& sampler : samplers_) {
+      if (sampler.due(simulation_.time(), simulation_.time_step())) {
+        sampler.sample(fields, simulation_.time(), simulation_.time_step());
+      }
+    }
+  }
+
+  void beat() {
+    const std::int64_t fresh = simulation_.steps() - reported_steps_;
+    reported_steps_ = simulation_.steps();
+    if (pulse_ && !pulse_(fresh * simulation_.particle_count())) throw Abandoned();
+  }
+
+  Record result() {
+    const ParticleFields end = simulation_.particles();
+    Record record;
+    record.outcome = simulation_.outcome();
+    record.time_step = simulation_.time_step();
+    record.end_time = simulation_.time();
+    record.unbalanced_force_ratio = simulation_.monitor().unbalanced_force_ratio;
+    record.kinetic_energy_ratio = simulation_.monitor().kinetic_energy_ratio;
+    record.cell_crossings = simulation_.cell_crossings();
+    record.relative_mass_change = mass_change(end);
+    record.profile = profile_of(end);
+    for (Sampler& sampler : samplers_) {
+      sampler.sample(end, simulation_.time(), simulation_.time_step());
+      record.histories.push_back(std::move(sampler).history());
+    }
+    record.digest = digest_of(end, record);
+    record.cost = {.wall_seconds = std::chrono::duration<double>(wall_).count(),
+                   .steps = simulation_.steps(),
+                   .particle_steps = simulation_.steps() * simulation_.particle_count()};
+    return record;
+  }
+
+  double mass_change(const ParticleFields& end) const {
+    const double before = std::accumulate(start_.mass.begin(), start_.mass.end(), 0.0);
+    const double after = std::accumulate(end.mass.begin(), end.mass.end(), 0.0);
+    return (after - before) / before;
+  }
+
+  static Profile profile_of(const ParticleFields& fields) {
+    const std::size_t particles = fields.mass.size();
+    return {.initial_position = component_of(fields.initial_position, particles, along_column),
+            .position = component_of(fields.position, particles, along_column),
+            .stress = component_of(fields.stress, particles, along_column),
+            .volume = fields.volume,
+            .initial_volume = fields.initial_volume,
+            .mass = fields.mass,
+            .half_size = component_of(fields.half_size, particles, along_column)};
+  }
+
+  static std::string digest_of(const ParticleFields& fields, const Record& record) {
+    Fnv1a hash;
+    for (const auto* field : {&fields.initial_position, &fields.position, &fields.velocity, &fields.half_size,
+                              &fields.stress, &fields.volume, &fields.initial_volume, &fields.mass}) {
+      hash.add(*field);
+    }
+    for (const History& history : record.histories) {
+      hash.add(history.time);
+      hash.add(history.value);
+    }
+    hash.add(static_cast<std::uint64_t>(record.outcome.step));
+    return hash.digits();
+  }
+
+  Simulation simulation_;
+  const Pulse& pulse_;
+  ParticleFields start_;
+  std::vector<Sampler> samplers_;
+  Clock::duration wall_{};
+  std::int64_t reported_steps_ = 0;
+};
+
+// ---- files ----
+
+[[noreturn]] void fail(const std::filesystem::path& path, const char* what) {
+  throw std::system_error(errno, std::generic_category(),
+                          std::string("cannot ") + what + " " + path.string());
+}
+
+class Descriptor {
+ public:
+  explicit Descriptor(int value) : value_(value) {}
+  ~Descriptor() {
+    if (value_ >= 0) ::close(value_);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  int value() const { return value_; }
+
+ private:
+  int value_;
+};
+
+/// A name beside `path` that no other process or thread uses now.
+std::filesystem::path temporary_beside(const std::filesystem::path& path) {
+  static std::atomic<unsigned> counter{0};
+  return path.parent_path() / fmt::format(".{}.{}-{}.part", path.filename().string(), ::getpid(), counter++);
+}
+
+void write_and_sync(const std::filesystem::path& path, const std::string& text) {
+  const Descriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
+  if (file.value() < 0) fail(path, "create");
+  for (std::size_t written = 0; written < text.size();) {
+    const ssize_t count = ::write(file.value(), text.data() + written, text.size() - written);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) fail(path, "write");
+    written += static_cast<std::size_t>(count);
+  }
+  if (::fsync(file.value()) != 0) fail(path, "write");
+}
+
+std::string hash_of_program() {
+  std::ifstream program("/proc/self/exe", std::ios::binary);
+  if (!program) throw std::runtime_error("cannot read the running program to identify it");
+  Fnv1a hash;
+  std::vector<char> block(1 << 16);
+  while (program) {
+    program.read(block.data(), static_cast<std::streamsize>(block.size()));
+    hash.add(block.data(), static_cast<std::size_t>(program.gcount()));
+  }
+  return hash.digits();
+}
+
+}  // namespace
+
+std::string ending_of(const Record& record) {
+  if (!record.failure.empty()) return "run failed: " + record.failure;
+  const Outcome& outcome = record.outcome;
+  std::string text = fmt::format("run ended {} at step {}, t = {:.4g} s", name_of(outcome.ending),
+                                 outcome.step, outcome.time);
+  if (outcome.particle >= 0)
+    text += fmt::format(", particle {}, value {:.6g}", outcome.particle, outcome.value);
+  return text;
+}
+
+Json to_json(const Record& record) {
+  return {{"schema", record_schema},
+          {"case_id", record.case_id},
+          {"input_hash", record.input_hash},
+          {"program_hash", record.program_hash},
+          {"revision", record.revision},
+          {"threads", record.threads},
+          {"failure", record.failure},
+          {"outcome", outcome_to_json(record.outcome)},
+          {"time_step", number(record.time_step)},
+          {"end_time", number(record.end_time)},
+          {"unbalanced_force_ratio", number(record.unbalanced_force_ratio)},
+          {"kinetic_energy_ratio", number(record.kinetic_energy_ratio)},
+          {"cell_crossings", record.cell_crossings},
+          {"relative_mass_change", number(record.relative_mass_change)},
+          {"digest", record.digest},
+          {"repeat_digest", record.repeat_digest},
+          {"cost",
+           {{"wall_seconds", number(record.cost.wall_seconds)},
+            {"steps", record.cost.steps},
+            {"particle_steps", record.cost.particle_steps}}},
+          {"profile", profile_to_json(record.profile)},
+          {"histories", histories_to_json(record.histories)}};
+}
+
+Record record_from_json(const Json& json) {
+  if (json.at("schema") != record_schema) throw std::runtime_error("not a record of this format");
+  const Json& cost = json.at("cost");
+  Record record;
+  record.case_id = json.at("case_id").get<std::string>();
+  record.input_hash = json.at("input_hash").get<std::string>();
+  record.program_hash = json.at("program_hash").get<std::string>();
+  record.revision = json.at("revision").get<std::string>();
+  record.threads = json.at("threads").get<int>();
+  record.failure = json.at("failure").get<std::string>();
+  record.outcome = outcome_from_json(json.at("outcome"));
+  record.time_step = number_from(json.at("time_step"));
+  record.end_time = number_from(json.at("end_time"));
+  record.unbalanced_force_ratio = number_from(json.at("unbalanced_force_ratio"));
+  record.kinetic_energy_ratio = number_from(json.at("kinetic_energy_ratio"));
+  record.cell_crossings = json.at("cell_crossings").get<std::int64_t>();
+  record.relative_mass_change = number_from(json.at("relative_mass_change"));
+  record.digest = json.at("digest").get<std::string>();
+  record.repeat_digest = json.at("repeat_digest").get<std::string>();
+  record.cost = {.wall_seconds = number_from(cost.at("wall_seconds")),
+                 .steps = cost.at("steps").get<std::int64_t>(),
+                 .particle_steps = cost.at("particle_steps").get<std::int64_t>()};
+  record.profile = profile_from_json(json.at("profile"));
+  record.histories = histories_from_json(json.at("histories"));
+  return record;
+}
+
+Record simulate(const Case& definition, const RunRequest& request, const Pulse& pulse) {
+  Record record = Recorder(definition, request, pulse).run();
+  record.case_id = definition.id;
+  record.input_hash = input_hash(request, definition.probes);
+  record.program_hash = program_hash();
+  record.revision = build_facts().revision;
+  return record;
+}
+
+std::string input_hash(const RunRequest& request, const std::vector<HistoryProbe>& probes) {
+  Json input = {{"schema", record_schema}, {"scene", request.scene_text}, {"probes", Json::array()}};
+  for (const HistoryProbe& probe : probes) {
+    input["probes"].push_back(
+        {{"id", probe.id}, {"quantity", probe.quantity}, {"at", probe.at}, {"every", probe.every}});
+  }
+  return hash_of(input.dump());
+}
+
+std::string program_hash() {
+  static const std::string hash = hash_of_program();
+  return hash;
+}
+
+std::string hash_of(const std::string& text) {
+  Fnv1a hash;
+  hash.add(text.data(), text.size());
+  return hash.digits();
+}
+
+void write_atomically(const std::filesystem::path& path, const std::string& text) {
+  const std::filesystem::path temporary = temporary_beside(path);
+  try {
+    write_and_sync(temporary, text);
+    if (::rename(temporary.c_str(), path.c_str()) != 0) fail(path, "write");
+  } catch (...) {
+    std::error_code ignored;
+    std::filesystem::remove(temporary, ignored);
+    throw;
+  }
+  // The new name lasts through a power cut only once the directory is on the disk too.
+  const std::filesystem::path directory = path.has_parent_path() ? path.parent_path() : ".";
+  const Descriptor descriptor(::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (descriptor.value() >= 0) ::fsync(descriptor.value());
+}
+
+}  // namespace mpm::vv

@@ -1,0 +1,272 @@
+#include "vv/verdict.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace mpm::vv {
+namespace {
+
+constexpr const char* results_schema = "mpmvv-results/1";
+
+/// JSON has no NaN: what could not be measured is null, and a detail beside it says why.
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json numbers(const std::vector<double>& values) {
+  Json json = Json::array();
+  for (double value : values) json.push_back(number(value));
+  return json;
+}
+
+Json numbers_by_name(const std::map<std::string, double>& values) {
+  Json json = Json::object();
+  for (const auto& [name, value] : values) json[name] = number(value);
+  return json;
+}
+
+Json series_by_name(const std::map<std::string, std::vector<double>>& values) {
+  Json json = Json::object();
+  for (const auto& [name, series] : values) json[name] = numbers(series);
+  return json;
+}
+
+Json parameters_to_json(const std::vector<std::pair<std::string, Json>>& parameters) {
+  Json json = Json::object();
+  for (const auto& [pointer, value] : parameters) json[pointer] = value;
+  return json;
+}
+
+Json gates_to_json(const std::vector<GateResult>& gates) {
+  Json json = Json::array();
+  for (const GateResult& gate : gates) {
+    json.push_back({{"id", gate.id},
+                    {"metric", gate.metric},
+                    {"value", number(gate.value)},
+                    {"op", gate.op},
+                    {"threshold", gate.threshold},
+                    {"reason", gate.reason},
+                    {"pass", gate.good()},
+                    {"status", name_of(gate.status)},
+                    {"must_fail", gate.must_fail},
+                    {"statistic", gate.statistic},
+                    {"basis", gate.basis},
+                    {"scope", gate.scope},
+                    {"margin", number(margin(gate))},
+                    {"detail", gate.detail}});
+  }
+  return json;
+}
+
+Json outcome_to_json(const Record& record) {
+  const Outcome& outcome = record.outcome;
+  Json json = {{"ending", record.failure.empty() ? name_of(outcome.ending) : "failed"},
+               {"step", outcome.step},
+               {"time", number(outcome.time)},
+               {"particle", outcome.particle},
+               {"value", number(outcome.value)},
+               {"completed", record.completed()}};
+  if (!record.failure.empty()) json["failure"] = record.failure;
+  return json;
+}
+
+Json run_to_json(const RunVerdict& run) {
+  const Record& record = run.record;
+  return {{"parameters", parameters_to_json(run.parameters)},
+          {"outcome", outcome_to_json(record)},
+          {"metrics", numbers_by_name(run.metrics)},
+          {"cost",
+           {{"wall_seconds", number(record.cost.wall_seconds)},
+            {"steps", record.cost.steps},
+            {"particle_steps", record.cost.particle_steps}}},
+          {"gates", gates_to_json(run.gates)},
+          {"time_step", number(record.time_step)},
+          {"end_time", number(record.end_time)},
+          {"unbalanced_force_ratio", number(record.unbalanced_force_ratio)},
+          {"kinetic_energy_ratio", number(record.kinetic_energy_ratio)},
+          {"revision", record.revision},
+          {"input_hash", record.input_hash},
+          {"program_hash", record.program_hash},
+          {"digest", record.digest},
+          {"repeat_digest", record.repeat_digest}};
+}
+
+Json series_to_json(const SeriesVerdict& series) {
+  return {{"across", series.across},
+          {"fixed", parameters_to_json(series.fixed)},
+          {"cell_size", numbers(series.cell_size)},
+          {"metrics", series_by_name(series.metrics)},
+          {"orders", series_by_name(series.orders)},
+          {"gates", gates_to_json(series.gates)}};
+}
+
+Json case_to_json(const CaseVerdict& verdict) {
+  Json json = {{"id", verdict.definition.id},
+               {"title", verdict.definition.title},
+               {"figure_of_paper", verdict.definition.figure_of_paper},
+               {"status", name_of(verdict.status)},
+               {"not_run_reason", verdict.not_run_reason},
+               {"runs", Json::array()},
+               {"series", Json::array()},
+               {"gates", gates_to_json(verdict.gates)}};
+  for (const RunVerdict& run : verdict.runs) json["runs"].push_back(run_to_json(run));
+  for (const SeriesVerdict& series : verdict.series) json["series"].push_back(series_to_json(series));
+  return json;
+}
+
+Json counts_to_json(const Counts& counts) {
+  return {{"cases", counts.cases},
+          {"cases_passed", counts.cases_passed},
+          {"cases_failed", counts.cases_failed},
+          {"cases_not_run", counts.cases_not_run},
+          {"runs", counts.runs},
+          {"gates", counts.gates},
+          {"gates_passed", counts.gates_passed},
+          {"gates_failed", counts.gates_failed},
+          {"controls", counts.controls},
+          {"controls_red", counts.controls_red},
+          {"controls_green", counts.controls_green}};
+}
+
+/// "cell size" of "/scene/grid/cell_size".
+std::string last_name_of(const std::string& pointer) {
+  std::string name = pointer.substr(pointer.rfind('/') + 1);
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
+
+std::string text_of(const Json& value) {
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_object()) {
+    for (const char* key : {"law", "type", "name"}) {
+      if (value.contains(key) && value[key].is_string()) return value[key].get<std::string>();
+    }
+  }
+  return value.dump();
+}
+
+std::string scope_of(const std::string& pointer, const Json& value) {
+  const std::string text = text_of(value);
+  if (pointer == "/scene/gravity/level") return text + "G";
+  if (pointer == "/scene/grid/cell_size") return "h " + text;
+  const bool speaks_for_itself = value.is_string() && text.find_first_of("0123456789") == std::string::npos;
+  return speaks_for_itself || value.is_object() ? text : last_name_of(pointer) + " " + text;
+}
+
+void count(const GateResult& gate, Counts& counts) {
+  if (gate.must_fail) {
+    ++counts.controls;
+    ++(gate.good() ? counts.controls_red : counts.controls_green);
+  } else {
+    ++counts.gates;
+    ++(gate.good() ? counts.gates_passed : counts.gates_failed);
+  }
+}
+
+}  // namespace
+
+const char* name_of(GateStatus status) {
+  switch (status) {
+    case GateStatus::pass:
+      return "pass";
+    case GateStatus::fail:
+      return "fail";
+    case GateStatus::red_as_expected:
+      return "red_as_expected";
+    case GateStatus::unexpectedly_green:
+      return "unexpectedly_green";
+  }
+  return "fail";
+}
+
+const char* name_of(CaseStatus status) {
+  switch (status) {
+    case CaseStatus::pass:
+      return "pass";
+    case CaseStatus::fail:
+      return "fail";
+    case CaseStatus::not_run:
+      return "not_run";
+  }
+  return "fail";
+}
+
+std::string scope_of(const std::vector<std::pair<std::string, Json>>& parameters) {
+  std::string scope;
+  for (const auto& [pointer, value] : parameters) {
+    if (!scope.empty()) scope += ", ";
+    scope += scope_of(pointer, value);
+  }
+  return scope.empty() ? "the run" : scope;
+}
+
+double margin(const GateResult& result) {
+  if (result.threshold == 0.0) return std::numeric_limits<double>::quiet_NaN();
+  const double room = result.op == "<=" ? result.threshold - result.value : result.value - result.threshold;
+  return room / std::abs(result.threshold);
+}
+
+std::vector<const GateResult*> gate_results(const CaseVerdict& verdict) {
+  std::vector<const GateResult*> results;
+  const auto add = [&](const std::vector<GateResult>& gates) {
+    for (const GateResult& gate : gates) results.push_back(&gate);
+  };
+  for (const RunVerdict& run : verdict.runs) add(run.gates);
+  for (const SeriesVerdict& series : verdict.series) add(series.gates);
+  add(verdict.gates);
+  return results;
+}
+
+Counts CampaignVerdict::counts() const {
+  Counts counts;
+  for (const CaseVerdict& verdict : cases) {
+    ++counts.cases;
+    switch (verdict.status) {
+      case CaseStatus::pass:
+        ++counts.cases_passed;
+        break;
+      case CaseStatus::fail:
+        ++counts.cases_failed;
+        break;
+      case CaseStatus::not_run:
+        ++counts.cases_not_run;
+        break;
+    }
+    counts.runs += static_cast<int>(verdict.runs.size());
+    for (const GateResult* gate : gate_results(verdict)) count(*gate, counts);
+  }
+  return counts;
+}
+
+bool CampaignVerdict::passed() const {
+  const Counts counted = counts();
+  return !failed() && counted.cases_not_run == 0;
+}
+
+bool CampaignVerdict::failed() const {
+  const Counts counted = counts();
+  return counted.cases_passed == 0 || counted.cases_failed > 0 || counted.gates_failed > 0 ||
+         counted.controls_green > 0;
+}
+
+Json to_json(const CampaignVerdict& verdict) {
+  Json json = {{"schema", results_schema},
+               {"revision", verdict.revision},
+               {"host", verdict.host},
+               {"counts", counts_to_json(verdict.counts())},
+               {"date", verdict.date},
+               {"processor", verdict.processor},
+               {"compiler", verdict.compiler},
+               {"build", verdict.build},
+               {"threads", verdict.threads},
+               {"quick", verdict.quick},
+               {"passed", verdict.passed()},
+               {"reused", verdict.reused},
+               {"wall_seconds", number(verdict.wall_seconds)},
+               {"cases", Json::array()}};
+  for (const CaseVerdict& case_verdict : verdict.cases) json["cases"].push_back(case_to_json(case_verdict));
+  return json;
+}
+
+}  // namespace mpm::vv
