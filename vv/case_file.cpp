@@ -1,9 +1,9 @@
 #include "vv/case_file.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <utility>
 
 #include "solver/error.hpp"
@@ -346,7 +346,7 @@ std::string swept_names(const std::vector<SweepAxis>& sweep) {
 }
 
 const SweepAxis& read_axis(const JsonPlace& place, const std::vector<SweepAxis>& sweep) {
-  const SweepAxis* axis = find_axis(sweep, place.text());
+  const SweepAxis* axis = place.present() ? find_axis(sweep, place.text()) : nullptr;
   if (!axis) place.refuse(swept_names(sweep));
   return *axis;
 }
@@ -436,6 +436,24 @@ bool hits(const Body& body, const Scene& scene, const PerAxis& at) {
   return true;
 }
 
+/// The swept values of a run, for messages; empty for the only run of a case without a sweep.
+std::string name_of(const RunRequest& run) {
+  std::vector<std::string> values;
+  for (const auto& [parameter, value] : run.parameters) values.push_back(parameter + " = " + describe(value));
+  return listed(values);
+}
+
+void require_hit(const JsonPlace& place, const RunRequest& run, const PerAxis& at) {
+  const std::vector<Body>& bodies = run.scene.bodies;
+  if (std::any_of(bodies.begin(), bodies.end(), [&](const Body& b) { return hits(b, run.scene, at); }))
+    return;
+  std::vector<std::string> lengths;
+  for (const JsonPlace& length : place.elements()) lengths.push_back(describe(length.value()));
+  const std::string where = run.parameters.empty() ? "" : " in the run with " + name_of(run);
+  throw Refusal(place.pointer(), "a place within one particle spacing of a particle",
+                listed(lengths) + ", which hits none" + where);
+}
+
 HistoryProbe read_probe(const JsonPlace& place, const Case& read) {
   place.allow_only({"id", "quantity", "at", "every"});
   HistoryProbe probe;
@@ -445,14 +463,7 @@ HistoryProbe read_probe(const JsonPlace& place, const Case& read) {
   if (probe.every <= 0.0) place["every"].refuse("a time above zero");
   for (const RunRequest& run : read.runs) {
     probe.at = read_per_axis(place["at"], axes_of(run.scene), QuantityKind::length);
-    const std::vector<Body>& bodies = run.scene.bodies;
-    if (std::none_of(bodies.begin(), bodies.end(),
-                     [&](const Body& b) { return hits(b, run.scene, probe.at); })) {
-      const JsonPlace first = place["at"].elements().front();
-      throw Refusal(place["at"].pointer(), "a place within one particle spacing of a particle",
-                    describe(first.value()) + ", which hits none in the run with " +
-                        run.scene_text.at("grid").at("cell_size").dump());
-    }
+    require_hit(place["at"], run, probe.at);
   }
   return probe;
 }
@@ -484,7 +495,7 @@ std::vector<Json> selected_values(const SweepAxis& axis, const std::vector<Selec
 /// Observed orders are taken in the cell size, so it must fall from each level to the next.
 void require_refinement(const JsonPlace& place, const SweepAxis& axis, const std::vector<Json>& values,
                         Json scene_text) {
-  double coarser = INFINITY;
+  double coarser = std::numeric_limits<double>::infinity();
   for (const Json& value : values) {
     scene_text.at(below_scene(axis.parameter)) = value;
     const double cell_size = read_scene(JsonPlace(&scene_text, scene_pointer)).cell_size;
