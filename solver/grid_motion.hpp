@@ -77,7 +77,9 @@ void add_gravity(Grid<Dim, Real>& grid, const Vector<Dim, Real>& gravity) {
 }
 
 /// Nodal acceleration and updated velocity [Kiriyama15, Eq. 4]. Cundall's local damping [Cundall87] takes
-/// `damping` times |unbalanced force| against the velocity; `damped` leaves it out at compile time.
+/// `damping` times |unbalanced force| against the motion; `damped` leaves it out at compile time.
+/// The motion is that of the undamped step, not of its start: with the old velocity a node that the step turns
+/// round is pushed on instead of held back, and alternates about zero for ever.
 template <bool damped, int Dim, class Real>
 void accelerate(Grid<Dim, Real>& grid, Real time_step, Real damping, Real empty_mass) {
   for (std::size_t i = 0; i < grid.sums.size(); ++i) {
@@ -88,7 +90,8 @@ void accelerate(Grid<Dim, Real>& grid, Real time_step, Real damping, Real empty_
       const Real velocity = node.momentum[a] * over_mass;
       Real force = node.force[a];
       if constexpr (damped) {
-        const Real against = velocity > 0 ? Real(-1) : velocity < 0 ? Real(1) : Real(0);
+        const Real undamped = velocity + time_step * force * over_mass;
+        const Real against = undamped > 0 ? Real(-1) : undamped < 0 ? Real(1) : Real(0);
         force += against * damping * std::abs(force);
       }
       motion.acceleration[a] = force * over_mass;

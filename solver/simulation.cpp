@@ -143,16 +143,15 @@ class Simulation::EngineOf final : public Simulation::Engine {
   std::int64_t cell_crossings() const override { return stepper_.transfer().cell_crossings(); }
 
   Monitor monitor() const override {
-    double unbalanced = 0.0, energy = 0.0;
+    double energy = 0.0;
     for (std::size_t i = 0; i < stepper_.grid().sums.size(); ++i) {
       const auto& node = stepper_.grid().sums[i];
       for (std::size_t a = 0; a < Dim; ++a) {
         const double velocity = static_cast<double>(stepper_.grid().motion[i].velocity[a]);
-        unbalanced += std::abs(static_cast<double>(node.force[a]));
         energy += 0.5 * static_cast<double>(node.mass) * velocity * velocity;
       }
     }
-    return {unbalanced / weight(), energy / (weight() * scene().cell_size)};
+    return {stepper_.unbalanced_force() / weight(), energy / (weight() * scene().cell_size)};
   }
 
   ParticleFields particles() const override {

@@ -51,7 +51,7 @@ struct ParticleFields {
 
 /// Quantities of the whole model after the last step.
 struct Monitor {
-  double unbalanced_force_ratio = 0.0;  ///< sum of |unbalanced nodal force| / total weight [-]
+  double unbalanced_force_ratio = 0.0;  ///< unbalanced force felt by the particles / total weight [-]
   double kinetic_energy_ratio = 0.0;    ///< kinetic energy of the grid / (total weight * cell size) [-]
 };
 

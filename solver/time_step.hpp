@@ -47,6 +47,8 @@ class TimeStepper {
   const Particles<Dim, Real>& particles() const { return particles_; }
   const Grid<Dim, Real>& grid() const { return grid_; }
   const Transfer<Dim, Real, scheme>& transfer() const { return transfer_; }
+  /// Of the last step [N]; see Transfer::unbalanced_force.
+  double unbalanced_force() const { return transfer_.unbalanced_force(particles_, grid_, empty_mass_); }
   typename Transfer<Dim, Real, scheme>::Fault find_fault() const { return transfer_.find_fault(particles_, grid_); }
 
  private:

@@ -58,6 +58,11 @@ class Transfer {
   /// Strain increments from the grid's velocity [Kiriyama15, Eq. 10a], and half sizes for cpGIMP [Eq. 14].
   void gather_strain(const Nodes& grid, Real time_step, Points& particles) const;
 
+  /// Sum over the particles of |mass * unbalanced acceleration of the grid at the particle| [N]: the part of the
+  /// unbalanced nodal force that the particles can feel. A pattern of nodal forces whose accelerations cancel at
+  /// every particle moves nothing, so it does not keep a model from being at rest.
+  double unbalanced_force(const Points& particles, const Nodes& grid, Real empty_mass) const;
+
   std::int64_t cell_crossings() const { return cell_crossings_; }
 
  private:
@@ -236,6 +241,22 @@ void Transfer<Dim, Real, scheme>::gather_strain(const Nodes& grid, Real time_ste
       for (std::size_t a = 0; a < Dim; ++a) particles.half_size[a][p] *= 1 + particles.strain_increment[a][p];
     }
   }
+}
+
+template <int Dim, class Real, Scheme scheme>
+double Transfer<Dim, Real, scheme>::unbalanced_force(const Points& particles, const Nodes& grid, Real empty_mass) const {
+  double sum = 0.0;
+  for (Eigen::Index p = 0; p < particles.count(); ++p) {
+    Vector<Dim, Real> acceleration{};
+    for_each_node(stencils_[static_cast<std::size_t>(p)], grid.row_stride(),
+                  [&](std::size_t i, Real weight, const Vector<Dim, Real>&) {
+                    const NodeSums<Dim, Real>& node = grid.sums[i];
+                    if (!(node.mass > empty_mass)) return;
+                    for (std::size_t a = 0; a < Dim; ++a) acceleration[a] += weight * (node.force[a] / node.mass);
+                  });
+    for (Real component : acceleration) sum += static_cast<double>(particles.mass[p] * std::abs(component));
+  }
+  return sum;
 }
 
 }  // namespace mpm
