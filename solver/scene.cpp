@@ -28,10 +28,10 @@ struct Overloaded : Ts... {
   using Ts::operator()...;
 };
 
-/// The shortest text that reads back as `value`, with its unit.
+/// `value` with its unit, to the twelve digits that hide the round-off of a decimal number.
 std::string text_of(double value, std::string_view unit = "") {
   char buffer[32];
-  char* end = std::to_chars(buffer, buffer + sizeof buffer, value).ptr;
+  char* end = std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, 12).ptr;
   std::string text(buffer, end);
   if (!unit.empty()) text.append(" ").append(unit);
   return text;
@@ -125,6 +125,11 @@ void check_material(const Scene& scene, const Body& body, const std::string& pla
              body.material);
 }
 
+void require_few_particles(double particles, const std::string& body_place) {
+  require(particles <= most_elements, body_place + "/particles_per_cell",
+          "at most " + text_of(most_elements) + " particles in the scene", text_of(particles) + " of them");
+}
+
 /// Checks where a body's edges are along one axis; returns how many particles fit between them.
 double check_extent(const Scene& scene, const Body& body, std::size_t axis, const std::string& place) {
   const int per_cell = body.particles_per_cell[axis];
@@ -142,6 +147,7 @@ double check_extent(const Scene& scene, const Body& body, std::size_t axis, cons
       std::round(spacings_at(upper) - spacings_at(lower)) >= 1.0, upper_place,
       "at least one particle of " + text_of(spacing, "m") + " above the lower edge " + text_of(lower, "m"),
       text_of(upper, "m"));
+  require_few_particles(spacings_at(upper) - spacings_at(lower), place);
   const double slack = whole_number_tolerance * scene.cell_size;
   require(lower >= scene.grid_lower[axis] - slack, lower_place,
           "a body inside the grid, which begins at " + text_of(scene.grid_lower[axis], "m"),
@@ -184,8 +190,7 @@ void check_bodies(const Scene& scene) {
     const Body& body = scene.bodies[i];
     const std::string place = at_index("/bodies", i);
     particles += check_body(scene, body, place);
-    require(particles <= most_elements, place + "/particles_per_cell",
-            "at most " + text_of(most_elements) + " particles in the scene", text_of(particles) + " of them");
+    require_few_particles(particles, place);
     for (std::size_t j = 0; j < i; ++j) {
       const Body& other = scene.bodies[j];
       require(body.name != other.name, place + "/name", "a name no other body has",

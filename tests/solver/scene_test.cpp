@@ -124,6 +124,11 @@ const std::vector<Impossible>& impossible_scenes() {
        [](Scene& s) { body(s).particles_per_cell[0] = 0; }},
       {"/bodies/0/particles_per_cell", "at most 1e+08 particles", "of them",
        [](Scene& s) { body(s).particles_per_cell[0] = 2'000'000'000; }},
+      {"/bodies/0/particles_per_cell", "at most 1e+08 particles", "2.5e+09 of them",
+       [](Scene& s) {
+         body(s).particles_per_cell = {1000, 1000};
+       },
+       block()},
       {"/bodies/0/lower/0", "a finite length", "nan m", [](Scene& s) { body(s).lower[0] = not_a_number; }},
       {"/bodies/0/upper/0", "a finite length", "inf m", [](Scene& s) { body(s).upper[0] = infinity; }},
       {"/bodies/0/upper/0", "at least one particle", "0 m", [](Scene& s) { body(s).upper[0] = 0.0; }},
