@@ -1,0 +1,334 @@
+#include "vv/norms.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numeric>
+
+#include "reference/column.hpp"
+#include "solver/shape_functions.hpp"
+
+namespace mpm::vv {
+namespace {
+
+using Values = std::vector<double>;
+
+/// L1 and L2 weighted by volume, L-infinity; each relative to the same norm of the exact field.
+struct RelativeNorms {
+  double l1, l2, linf;
+};
+
+RelativeNorms relative_norms(const Values& found, const Values& exact, const Values& weight) {
+  double e1 = 0, e2 = 0, em = 0, n1 = 0, n2 = 0, nm = 0;
+  for (std::size_t p = 0; p < found.size(); ++p) {
+    const double error = std::abs(found[p] - exact[p]), norm = std::abs(exact[p]);
+    e1 += weight[p] * error;
+    n1 += weight[p] * norm;
+    e2 += weight[p] * error * error;
+    n2 += weight[p] * norm * norm;
+    // Not std::max: it would drop an error that is not a number.
+    if (!(error <= em)) em = error;
+    nm = std::max(nm, norm);
+  }
+  return {e1 / n1, std::sqrt(e2 / n2), em / nm};
+}
+
+double weighted_norm(const Values& values, const Values& weight) {
+  double sum = 0.0;
+  for (std::size_t p = 0; p < values.size(); ++p) sum += weight[p] * values[p] * values[p];
+  return std::sqrt(sum);
+}
+
+Values difference(const Values& a, const Values& b) {
+  Values result(a.size());
+  std::transform(a.begin(), a.end(), b.begin(), result.begin(), std::minus<>());
+  return result;
+}
+
+template <class Function>
+Values map(const Values& values, Function&& function) {
+  Values result(values.size());
+  std::transform(values.begin(), values.end(), result.begin(), function);
+  return result;
+}
+
+/// Particles within `reach` of a place, or the three nearest if there are fewer. Positions need not be sorted.
+std::vector<std::size_t> neighbours(const Values& position, double place, double reach) {
+  std::vector<std::size_t> order(position.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto distance = [&](std::size_t p) { return std::abs(position[p] - place); };
+  const auto within = static_cast<std::size_t>(
+      std::count_if(order.begin(), order.end(), [&](std::size_t p) { return distance(p) <= reach; }));
+  const std::size_t count = std::min(std::max<std::size_t>(within, 3), order.size());
+  std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count), order.end(),
+                    [&](std::size_t a, std::size_t b) { return distance(a) < distance(b); });
+  order.resize(count);
+  return order;
+}
+
+/// Value at `place` of the weighted least-squares line through the chosen points.
+double line_through(const Values& x, const Values& y, const Values& weight, const std::vector<std::size_t>& chosen,
+                    double place) {
+  double w = 0, wx = 0, wy = 0, wxx = 0, wxy = 0;
+  for (std::size_t p : chosen) {
+    const double d = x[p] - place;
+    w += weight[p];
+    wx += weight[p] * d;
+    wy += weight[p] * y[p];
+    wxx += weight[p] * d * d;
+    wxy += weight[p] * d * y[p];
+  }
+  const double determinant = w * wxx - wx * wx;
+  // All points in one place have no line; their mean is the value there.
+  if (!(determinant > 1e-12 * w * wxx)) return wy / w;
+  return (wxx * wy - wx * wxy) / determinant;
+}
+
+/// Particle-to-grid weights S [node, particle] of the final state, over the nodes the particles reach.
+Eigen::MatrixXd mapping_matrix(const Scene& scene, const Profile& profile) {
+  constexpr int ghost_layers = 2;
+  const auto nodes = static_cast<Eigen::Index>(
+      std::lround((scene.grid_upper[0] - scene.grid_lower[0]) / scene.cell_size) + 1 + 2 * ghost_layers);
+  const auto fill = [&]<class Shape>(Shape) {
+    Eigen::MatrixXd s = Eigen::MatrixXd::Zero(nodes, static_cast<Eigen::Index>(profile.position.size()));
+    for (std::size_t p = 0; p < profile.position.size(); ++p) {
+      const double x = (profile.position[p] - scene.grid_lower[0]) / scene.cell_size + ghost_layers;
+      const double half_size = profile.half_size[p] / scene.cell_size;
+      const std::int32_t first = Shape::first_node(x, half_size);
+      std::array<double, Shape::width> weight, gradient;
+      Shape::evaluate(x, half_size, first, weight, gradient);
+      for (int k = 0; k < Shape::width; ++k) {
+        s(first + k, static_cast<Eigen::Index>(p)) = weight[static_cast<std::size_t>(k)];
+      }
+    }
+    return s;
+  };
+  return scene.scheme == Scheme::mpm ? fill(LinearShape{}) : fill(GimpShape{});
+}
+
+/// The column a scene describes, for the reference solutions.
+reference::Column column_of(const Scene& scene) {
+  const Body& body = scene.bodies.front();
+  const double gravity = std::abs(scene.gravity.acceleration[0]) * scene.gravity.level;
+  const auto modulus = [](const auto& material) { return material.youngs_modulus; };
+  return {body.density * gravity, body.upper[0] - body.lower[0], std::visit(modulus, body.material)};
+}
+
+/// Everything the norms of one run are computed from.
+struct Judging {
+  const Case& definition;
+  const Scene& scene;
+  const Record& record;
+  reference::Column column;
+  Judgement result;
+
+  const Profile& profile() const { return record.profile; }
+  void set(const std::string& name, double value) {
+    if (std::isfinite(value)) result.metrics[name] = value;
+  }
+  void set_norms(const std::string& name, const RelativeNorms& norms) {
+    set(name + ".l1", norms.l1);
+    set(name + ".l2", norms.l2);
+    set(name + ".linf", norms.linf);
+  }
+  bool asks_for(const std::string& reference) const {
+    const auto& all = definition.references;
+    return std::find(all.begin(), all.end(), reference) != all.end();
+  }
+};
+
+std::size_t top_particle(const Profile& profile) {
+  const auto& x = profile.initial_position;
+  return static_cast<std::size_t>(std::max_element(x.begin(), x.end()) - x.begin());
+}
+
+/// How far the top edge of the topmost particle's domain has come down [m]: every scheme carries the volume,
+/// so the edge is half the current length above the particle.
+double settlement_of(const Profile& profile) {
+  const std::size_t top = top_particle(profile);
+  return -(profile.displacement[top] + (profile.volume[top] - profile.initial_volume[top]) / 2);
+}
+
+/// Error of the mean stress of every cell that the domains cover, against the exact mean. What the grid's
+/// equilibrium constrains is this mean; the share of each particle in it is left to the particles.
+void judge_cell_means(Judging& judging, const std::string& name, const reference::ColumnSolution& exact) {
+  const Profile& profile = judging.profile();
+  const double h = judging.scene.cell_size;
+  const std::size_t top = top_particle(profile);
+  const auto cells = static_cast<std::size_t>((profile.position[top] + profile.half_size[top]) / h);
+  Values found(cells, 0.0), expected(cells, 0.0), centre(cells);
+  for (std::size_t p = 0; p < profile.position.size(); ++p) {
+    const double lower = profile.position[p] - profile.half_size[p], upper = profile.position[p] + profile.half_size[p];
+    const auto first = static_cast<std::size_t>(std::max(0.0, std::floor(lower / h)));
+    for (std::size_t c = first; c < cells && static_cast<double>(c) * h < upper; ++c) {
+      const double a = static_cast<double>(c) * h;
+      found[c] += profile.stress[p] * std::max(0.0, std::min(a + h, upper) - std::max(a, lower)) / h;
+    }
+  }
+  for (std::size_t c = 0; c < cells; ++c) {
+    const double a = static_cast<double>(c) * h;
+    centre[c] = a + h / 2;
+    expected[c] = (exact.stress(a) + 4 * exact.stress(a + h / 2) + exact.stress(a + h)) / 6;  // Simpson
+  }
+  if (cells == 0) return;
+  judging.set_norms(name + ".cell_stress", relative_norms(found, expected, Values(cells, 1.0)));
+}
+
+void judge_by_solution(Judging& judging, const std::string& name) {
+  const Profile& profile = judging.profile();
+  const auto exact = reference::column_solution(name, judging.column);
+  const Values stress = map(profile.position, [&](double x) { return exact->stress(x); });
+  const Values displacement = map(profile.initial_position, [&](double x) { return exact->displacement(x); });
+  judging.set_norms(name + ".stress", relative_norms(profile.stress, stress, profile.volume));
+  judging.set_norms(name + ".displacement", relative_norms(profile.displacement, displacement, profile.initial_volume));
+  judging.set(name + ".settlement", std::abs(settlement_of(profile) / exact->settlement() - 1));
+  judging.result.curves.push_back({"stress", name, profile.position, stress, "position"});
+  judging.result.curves.push_back({"displacement", name, profile.initial_position, displacement, "initial_position"});
+  if (judging.scene.scheme != Scheme::mpm) judge_cell_means(judging, name, *exact);
+}
+
+void judge_by_equilibrium(Judging& judging) {
+  const Profile& profile = judging.profile();
+  const Values exact = map(profile.initial_position,
+                           [&](double x) { return reference::equilibrium_stress(judging.column, x); });
+  judging.set_norms("equilibrium.stress", relative_norms(profile.stress, exact, profile.volume));
+
+  const Values error = difference(profile.stress, exact);
+  Values rough(error.size());
+  for (std::size_t p = 0; p < error.size(); ++p) {
+    const auto near = neighbours(profile.position, profile.position[p], 1.5 * judging.scene.cell_size);
+    rough[p] = error[p] - line_through(profile.position, error, profile.volume, near, profile.position[p]);
+  }
+  judging.set("oscillation.hp", weighted_norm(rough, profile.volume) / weighted_norm(exact, profile.volume));
+
+  const double largest = std::abs(reference::equilibrium_stress(judging.column, 0.0));
+  judging.result.curves.push_back({"stress", "equilibrium", profile.position, exact, "position"});
+  judging.result.curves.push_back({"stress_error", "run", profile.initial_position,
+                                   map(error, [&](double e) { return e / largest; }), "initial_position"});
+}
+
+/// Share of the stress that the grid cannot see: its part along the directions whose singular values in S are
+/// below a tenth of the largest. With one particle per cell S has full rank, only just: a sawtooth of one cell
+/// comes out of it 30 times smaller (50 cells), so a cut at round-off would let every sawtooth pass.
+double unseen_share(const Scene& scene, const Profile& profile) {
+  constexpr double seen = 0.1;
+  const Eigen::MatrixXd s = mapping_matrix(scene, profile);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(s.transpose() * s);
+  const auto stress = Eigen::Map<const Eigen::VectorXd>(profile.stress.data(),
+                                                        static_cast<Eigen::Index>(profile.stress.size()));
+  const Eigen::VectorXd parts = modes.eigenvectors().transpose() * stress;
+  const double largest = modes.eigenvalues().maxCoeff();
+  double unseen = 0.0;
+  for (Eigen::Index k = 0; k < parts.size(); ++k) {
+    if (modes.eigenvalues()[k] < seen * seen * largest) unseen += parts[k] * parts[k];
+  }
+  return std::sqrt(unseen) / stress.norm();
+}
+
+void judge_model_form_floor(Judging& judging) {
+  const auto hencky = reference::column_solution("hencky", judging.column);
+  const auto zhang = reference::column_solution("zhang", judging.column);
+  judging.set("floor.stress.l2", reference::stress_distance(*zhang, *hencky));
+  judging.set("floor.settlement", std::abs(zhang->settlement() / hencky->settlement() - 1));
+}
+
+bool is_finite(const Values& values) {
+  return std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
+}
+
+double count_non_finite(const Record& record) {
+  double count = 0;
+  const auto add = [&](const Values& values) {
+    count += static_cast<double>(
+        std::count_if(values.begin(), values.end(), [](double value) { return !std::isfinite(value); }));
+  };
+  const Profile& p = record.profile;
+  for (const Values* field : {&p.position, &p.displacement, &p.stress, &p.volume, &p.half_size}) add(*field);
+  for (const History& history : record.histories) add(history.value);
+  return count;
+}
+
+void judge_final_state(Judging& judging) {
+  const Profile& profile = judging.profile();
+  judging.set("settlement", settlement_of(profile));
+  double least = 1.0;
+  for (std::size_t p = 0; p < profile.volume.size(); ++p) {
+    least = std::min(least, profile.volume[p] / profile.initial_volume[p]);
+  }
+  judging.set("largest_compression", 1 - least);
+  judging.set("unbalanced_force_ratio", judging.record.unbalanced_force_ratio);
+  judging.set("kinetic_energy_ratio", judging.record.kinetic_energy_ratio);
+  judging.result.curves.push_back({"stress", "run", profile.position, profile.stress, "position"});
+  judging.result.curves.push_back(
+      {"displacement", "run", profile.initial_position, profile.displacement, "initial_position"});
+  if (!is_finite(profile.stress) || !is_finite(profile.position)) return;
+  judging.set("oscillation.ns", unseen_share(judging.scene, profile));
+  if (judging.asks_for("equilibrium")) judge_by_equilibrium(judging);
+  for (const char* name : {"hencky", "zhang"}) {
+    if (judging.asks_for(name)) judge_by_solution(judging, name);
+  }
+  if (judging.asks_for("hencky") && judging.asks_for("zhang")) judge_model_form_floor(judging);
+}
+
+std::vector<Metric> make_catalogue() {
+  std::vector<Metric> all;
+  const auto add_norms = [&](const std::string& field, const std::string& reference, const std::string& what) {
+    all.push_back({field + ".l1", "-", reference, what + ": L1, volume weighted, relative to the exact field"});
+    all.push_back({field + ".l2", "-", reference, what + ": L2, volume weighted, relative to the exact field"});
+    all.push_back({field + ".linf", "-", reference, what + ": largest error relative to the largest exact value"});
+  };
+  add_norms("equilibrium.stress", "equilibrium", "error of the stress against -q (h0 - X), true for every law");
+  for (const std::string name : {"hencky", "zhang"}) {
+    const std::string law = name == "hencky" ? "Hencky's column" : "Zhang's column";
+    add_norms(name + ".stress", name, "error of the stress at the particles' current places against " + law);
+    add_norms(name + ".cell_stress", name, "error of each cell's mean stress (schemes with domains) against " + law);
+    add_norms(name + ".displacement", name, "error of the displacement against " + law);
+    all.push_back({name + ".settlement", "-", name, "relative error of the settlement of the top against " + law});
+  }
+  all.push_back({"floor.stress.l2", "-", "hencky", "model-form floor: relative L2 distance of Zhang's stress from Hencky's"});
+  all.push_back({"floor.settlement", "-", "hencky", "model-form floor: Zhang's settlement relative to Hencky's, minus 1"});
+  all.push_back({"oscillation.hp", "-", "equilibrium", "HP: the error less its local linear fit (1.5 cells either side), relative to the exact stress"});
+  all.push_back({"oscillation.ns", "-", "", "NS: share of the stress in modes that the grid sees at less than a tenth of the best seen"});
+  all.push_back({"settlement", "m", "", "how far the top edge has come down"});
+  all.push_back({"largest_compression", "-", "", "1 - the least ratio of current to initial volume"});
+  all.push_back({"cell_crossings", "-", "", "particle centres that changed cell, counted every step"});
+  all.push_back({"unbalanced_force_ratio", "-", "", "unbalanced force felt by the particles at the end / total weight"});
+  all.push_back({"kinetic_energy_ratio", "-", "", "kinetic energy of the grid at the end / (total weight * cell size)"});
+  all.push_back({"mass_change", "-", "", "relative change of the total mass, end against start"});
+  all.push_back({"non_finite_values", "-", "", "values in the record that are not finite numbers"});
+  all.push_back({"bits_differ", "-", "", "0 if a repeat on another number of threads ends in the same bits, else 1"});
+  all.push_back({"completed", "-", "", "1 if the run ended where it was meant to, else 0"});
+  all.push_back({"steps", "-", "", "time steps done"});
+  all.push_back({"particle_steps", "-", "", "time steps times particles: the noise-free cost"});
+  return all;
+}
+
+}  // namespace
+
+const std::vector<Metric>& metric_catalogue() {
+  static const std::vector<Metric> catalogue = make_catalogue();
+  return catalogue;
+}
+
+const std::vector<std::string>& reference_catalogue() {
+  static const std::vector<std::string> catalogue{"equilibrium", "hencky", "zhang"};
+  return catalogue;
+}
+
+Judgement judge(const Case& definition, const RunRequest& request, const Record& record) {
+  Judging judging{definition, request.scene, record, column_of(request.scene), {}};
+  judging.set("completed", record.completed() ? 1 : 0);
+  judging.set("cell_crossings", static_cast<double>(record.cell_crossings));
+  judging.set("steps", static_cast<double>(record.cost.steps));
+  judging.set("particle_steps", static_cast<double>(record.cost.particle_steps));
+  judging.set("non_finite_values", count_non_finite(record));
+  if (record.failure.empty()) judging.set("mass_change", std::abs(record.relative_mass_change));
+  for (const History& history : record.histories) {
+    judging.result.curves.push_back({history.id, "run", history.time, history.value, "time"});
+  }
+  if (record.completed()) judge_final_state(judging);
+  return judging.result;
+}
+
+}  // namespace mpm::vv
