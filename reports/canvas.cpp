@@ -6,14 +6,12 @@
 #include <fontconfig/fontconfig.h>
 #include <pango/pangocairo.h>
 #include <png.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <csetjmp>
 #include <cstdint>
-#include <fstream>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -713,26 +711,5 @@ std::vector<unsigned char> Canvas::png() const {
 }
 
 std::string resolved_family(const std::string& family) { return Typesetter::of_this_thread().resolve(family); }
-
-void write_atomically(const std::filesystem::path& path, const void* bytes, std::size_t size) {
-  const std::filesystem::path temporary = path.string() + ".part" + std::to_string(getpid());
-  std::error_code error;
-  if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path(), error);
-  {
-    std::ofstream out(temporary, std::ios::binary | std::ios::trunc);
-    out.write(static_cast<const char*>(bytes), static_cast<std::streamsize>(size));
-    out.flush();
-    if (!out) {
-      std::filesystem::remove(temporary, error);
-      throw CanvasError("cannot write " + path.string());
-    }
-  }
-  std::filesystem::rename(temporary, path, error);
-  if (error) {
-    const std::string reason = error.message();
-    std::filesystem::remove(temporary, error);
-    throw CanvasError("cannot write " + path.string() + ": " + reason);
-  }
-}
 
 }  // namespace mpm::reports

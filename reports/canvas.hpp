@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cstddef>
-#include <filesystem>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -10,7 +8,7 @@
 namespace mpm::reports {
 
 /// A picture that could not be drawn: no offscreen renderer, a GL error, a font that is not the one asked for,
-/// malformed markup, or a file that could not be written. The message says which and what to do.
+/// or malformed markup. The message says which and what to do.
 class CanvasError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -135,9 +133,5 @@ class Canvas {
 
 /// The family that fontconfig really serves when `family` is asked for: silent substitution shows here.
 std::string resolved_family(const std::string& family);
-
-/// Writes a whole file under a temporary name beside `path`, then renames it. Creates missing folders.
-/// Throws CanvasError.
-void write_atomically(const std::filesystem::path& path, const void* bytes, std::size_t size);
 
 }  // namespace mpm::reports

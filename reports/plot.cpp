@@ -129,14 +129,26 @@ std::vector<std::string> notes_on_missing_points(const Panel& panel) {
   const auto list = [&counts](auto pick) {
     std::string text;
     for (const auto& [label, count] : counts)
-      if (pick(count) > 0) text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", label, pick(count));
+      if (pick(count) > 0) text += fmt::format("{}{}\u00a0({})", text.empty() ? "" : ", ", label, pick(count));
     return text;
   };
   const std::string outside = list([](const auto& c) { return c.first; });
   const std::string not_finite = list([](const auto& c) { return c.second; });
-  if (!outside.empty()) notes.push_back("Points outside the axes, marked at the edge: " + outside);
+  if (!outside.empty()) notes.push_back("Points beyond the axes, marked at the edge: " + outside);
   if (!not_finite.empty()) notes.push_back("Points that are not finite, not drawn: " + not_finite);
   return notes;
+}
+
+/// The bars that the axis cuts, with their values.
+std::vector<std::string> notes_on_cut_bars(const Panel& panel) {
+  std::string list;
+  for (const BarGroup& group : panel.groups)
+    for (std::size_t s = 0; s < std::min(panel.bar_series.size(), group.values.size()); ++s)
+      if (std::isfinite(group.values[s]) && fraction(panel.y, group.values[s]) > 1.0)
+        list += fmt::format("{}{}{}{} ({:.2g})", list.empty() ? "" : ", ", panel.bar_series[s].label,
+                            group.name.empty() ? "" : " at ", group.name, group.values[s]);
+  if (list.empty()) return {};
+  return {"Bars cut by the axis: " + list};
 }
 
 /// A panel measured and placed.
@@ -174,9 +186,10 @@ Placed measured(const Panel& panel, double frame_guess, double aspect) {
     placed.x = ready(x_axis, wanted);
     if (labels_fit(placed.x, frame_guess)) break;
   }
-  placed.y = ready(panel.y, std::clamp(static_cast<int>(frame_guess * aspect / 28.0), 3, 7));
+  placed.y = ready(panel.y, std::clamp(static_cast<int>(frame_guess * aspect / 24.0), 3, 7));
   placed.notes = panel.notes;
   for (std::string& note : notes_on_missing_points(panel)) placed.notes.push_back(std::move(note));
+  for (std::string& note : notes_on_cut_bars(panel)) placed.notes.push_back(std::move(note));
   placed.left_room = (panel.y.label.empty() ? 0.0 : line_height + 3.0) + widest_label(placed.y) + tick_gap;
   double label_width = 0.0;
   for (const LevelLine& level : panel.levels) label_width = std::max(label_width, text_width(level.label));
@@ -224,16 +237,23 @@ std::vector<LegendEntry> legend_of(const Plot& plot) {
   return entries;
 }
 
-constexpr double legend_sample = 22.0;
 constexpr double legend_gap = 18.0;
 constexpr double legend_row = 14.0;
+
+/// Room for the sample of line, bar or marker in front of a label.
+double sample_width(const LegendEntry& entry) {
+  if (entry.kind == LegendEntry::Kind::bar) return 18.0;
+  return entry.kind == LegendEntry::Kind::curve && entry.look.line_width <= 0.0 ? 8.0 : 24.0;
+}
+
+double entry_width(const LegendEntry& entry) { return sample_width(entry) + 5.0 + text_width(entry.label); }
 
 /// Entries a row, as many as fit.
 std::vector<std::vector<LegendEntry>> legend_rows(const std::vector<LegendEntry>& entries, double width) {
   std::vector<std::vector<LegendEntry>> rows;
   double used = 0.0;
   for (const LegendEntry& entry : entries) {
-    const double needed = legend_sample + 5.0 + text_width(entry.label) + legend_gap;
+    const double needed = entry_width(entry) + legend_gap;
     if (rows.empty() || used + needed > width + legend_gap) {
       rows.emplace_back();
       used = 0.0;
@@ -245,7 +265,8 @@ std::vector<std::vector<LegendEntry>> legend_rows(const std::vector<LegendEntry>
 }
 
 MarkerStyle marker_of(const Look& look) {
-  return {look.marker, look.marker_size, look.filled ? look.color : white, look.color, 0.75};
+  const Color inside = look.filled ? look.color : look.line_width > 0.0 ? white : Color{1.0, 1.0, 1.0, 0.0};
+  return {look.marker, look.marker_size, inside, look.color, 0.7};
 }
 
 void fill_bar(Canvas& canvas, const Rectangle& box, const Look& look, const Rectangle& clip) {
@@ -267,19 +288,17 @@ void fill_bar(Canvas& canvas, const Rectangle& box, const Look& look, const Rect
 }
 
 void draw_sample(Canvas& canvas, const LegendEntry& entry, double left, double middle, const Rectangle& sheet) {
-  const double right = left + legend_sample;
+  const double right = left + sample_width(entry);
   if (entry.kind == LegendEntry::Kind::level) {
     canvas.line({{left, middle}, {right, middle}}, entry.stroke);
   } else if (entry.kind == LegendEntry::Kind::bar) {
-    const Rectangle box{left + 4.0, middle - 4.0, right, middle + 4.0};
+    const Rectangle box{left, middle - 4.0, right, middle + 4.0};
     fill_bar(canvas, box, entry.look, sheet);
     canvas.line({{box.left, box.bottom}, {box.right, box.bottom}}, {entry.look.color, 0.8, {}});
   } else {
     if (entry.look.line_width > 0.0)
       canvas.line({{left, middle}, {right, middle}}, {entry.look.color, entry.look.line_width, entry.look.dash});
-    Look larger = entry.look;
-    larger.marker_size = std::max(larger.marker_size, 4.2);
-    canvas.marker({(left + right) / 2, middle}, marker_of(larger));
+    canvas.marker({(left + right) / 2, middle}, marker_of(entry.look));
   }
 }
 
@@ -289,16 +308,16 @@ Rectangle draw_legend(Canvas& canvas, const std::vector<std::vector<LegendEntry>
   Rectangle covered{canvas.width(), top, 0.0, top + static_cast<double>(rows.size()) * legend_row};
   for (std::size_t r = 0; r < rows.size(); ++r) {
     double width = -legend_gap;
-    for (const LegendEntry& entry : rows[r]) width += legend_sample + 5.0 + text_width(entry.label) + legend_gap;
+    for (const LegendEntry& entry : rows[r]) width += entry_width(entry) + legend_gap;
     double left = (canvas.width() - width) / 2;
     covered.left = std::min(covered.left, left);
     covered.right = std::max(covered.right, left + width);
     const double middle = top + (static_cast<double>(r) + 0.5) * legend_row;
     for (const LegendEntry& entry : rows[r]) {
       draw_sample(canvas, entry, left, middle, sheet);
-      left += legend_sample + 5.0;
-      canvas.text({left, middle}, entry.label, text_style(Horizontal::left, Vertical::middle));
-      left += text_width(entry.label) + legend_gap;
+      canvas.text({left + sample_width(entry) + 5.0, middle}, entry.label,
+                  text_style(Horizontal::left, Vertical::middle));
+      left += entry_width(entry) + legend_gap;
     }
   }
   return covered;
@@ -424,14 +443,6 @@ void draw_curve(Canvas& canvas, const Placed& placed, const PlotCurve& curve, La
   }
 }
 
-/// A bar that reaches beyond the frame: a white gap across it and an arrowhead say so.
-void draw_break(Canvas& canvas, const Rectangle& bar, const Rectangle& f, const Color& color) {
-  const double y = f.top + 12.0;
-  canvas.polygon({{bar.left - 2.0, y + 3.0}, {bar.right + 2.0, y - 1.0}, {bar.right + 2.0, y + 1.5}, {bar.left - 2.0, y + 5.5}},
-                 white);
-  draw_edge_mark(canvas, {bar.center().x, f.top - 3.5}, {bar.center().x, f.top - 100.0}, f, color);
-}
-
 void write_in_bar_slot(Canvas& canvas, Point foot, const std::string& words, const Color& color, Layout::Panel& layout) {
   TextStyle style = text_style(Horizontal::left, Vertical::middle, type_size, color);
   style.upward = true;
@@ -466,15 +477,16 @@ void draw_bars(Canvas& canvas, const Placed& placed, Layout::Panel& layout) {
                           layout);
         continue;
       }
-      const Rectangle bar{x - bar_width / 2, f.bottom - std::min(height, 1.0) * f.height(), x + bar_width / 2, f.bottom};
-      canvas.clip(f);
-      fill_bar(canvas, height > 1.0 ? Rectangle{bar.left, bar.top - 4.0, bar.right, bar.bottom} : bar, look, f);
-      canvas.unclip();
-      layout.points.push_back({x, bar.top});
+      Rectangle bar{x - bar_width / 2, f.bottom - std::min(height, 1.0) * f.height(), x + bar_width / 2, f.bottom};
       if (height > 1.0) {
         ++layout.outside;
-        draw_break(canvas, bar, f, look.color);
+        bar.top = f.top + edge_mark + 4.0;
+        draw_edge_mark(canvas, {x, f.top + edge_mark / 2 + 1.5}, {x, f.top - 1.0}, f, look.color);
       }
+      canvas.clip(f);
+      fill_bar(canvas, bar, look, f);
+      canvas.unclip();
+      layout.points.push_back({x, bar.top});
     }
   }
 }
@@ -535,24 +547,30 @@ std::optional<Rectangle> empty_place(const Rectangle& frame, double width, doubl
   return std::nullopt;
 }
 
-/// A right triangle of slope `order` with its legs labelled, if there is room for it.
-void draw_slope(Canvas& canvas, const Placed& placed, double order, const std::vector<Point>& covered,
-                Layout::Panel& layout) {
+/// Right triangles of the given slopes over a common base, if there is room for them.
+void draw_slopes(Canvas& canvas, const Placed& placed, const std::vector<double>& orders,
+                 const std::vector<Point>& covered, Layout::Panel& layout) {
   const Rectangle& f = placed.frame;
   const double x_decade = f.width() / std::log10(placed.x.axis.range.upper / placed.x.axis.range.lower);
   const double y_decade = f.height() / std::log10(placed.y.axis.range.upper / placed.y.axis.range.lower);
-  const double decades = std::min(0.35, 0.5 * f.height() / (order * y_decade));
-  const double run = decades * x_decade, rise = decades * order * y_decade;
-  const std::string label = fmt::format("{:g}", order);
-  const double label_width = text_width(label);
-  const auto place = empty_place(f, run + label_width + 5.0, rise + 12.0, covered, layout.annotations);
+  const double steepest = *std::max_element(orders.begin(), orders.end());
+  double label_width = 0.0;
+  for (const double order : orders) label_width = std::max(label_width, text_width(fmt::format("order {:g}", order)));
+  std::optional<Rectangle> place;
+  double run = 0.0;
+  for (double decades = 0.4; decades > 0.1 && !place; decades -= 0.05) {
+    run = decades * x_decade;
+    place = empty_place(f, run + 4.0 + label_width, decades * steepest * y_decade + 8.0, covered, layout.annotations);
+  }
   if (!place) return;
   layout.annotations.push_back(*place);
-  const Point a{place->left, place->top + rise}, b{place->left + run, place->top + rise}, c{b.x, place->top};
-  canvas.polygon({a, b, c}, {0.93, 0.93, 0.93, 1.0});
-  canvas.line({a, b, c, a, b}, {muted, 0.7, {}});
-  canvas.text({(a.x + b.x) / 2, a.y + 3.0 + 6.5}, "1", text_style(Horizontal::center, Vertical::baseline, type_size, muted));
-  canvas.text({b.x + 4.0, (b.y + c.y) / 2}, label, text_style(Horizontal::left, Vertical::middle, type_size, muted));
+  const Point corner{place->left, place->bottom - 4.0}, foot{place->left + run, corner.y};
+  for (const double order : orders) {
+    const Point apex{foot.x, foot.y - order * run / x_decade * y_decade};
+    canvas.line({corner, foot, apex, corner, foot}, {muted, 0.7, {}});
+    canvas.text({foot.x + 4.0, apex.y}, fmt::format("order {:g}", order),
+                text_style(Horizontal::left, Vertical::middle, type_size, muted));
+  }
 }
 
 void draw_notes(Canvas& canvas, const Placed& placed, double left, double width) {
@@ -574,10 +592,13 @@ Layout::Panel draw_panel(Canvas& canvas, const Placed& placed, std::size_t numbe
   draw_frame(canvas, placed.frame);
   draw_x_ticks(canvas, placed);
   draw_y_ticks(canvas, placed);
-  for (const PlotCurve& curve : placed.panel->curves) draw_curve(canvas, placed, curve, layout);
+  std::vector<const PlotCurve*> order;
+  for (const PlotCurve& curve : placed.panel->curves) order.push_back(&curve);
+  std::stable_sort(order.begin(), order.end(), [](const PlotCurve* a, const PlotCurve* b) { return a->layer < b->layer; });
+  for (const PlotCurve* curve : order) draw_curve(canvas, placed, *curve, layout);
   if (!placed.panel->reference_slopes.empty()) {
     const std::vector<Point> covered = covered_places(placed, layout);
-    for (const double order : placed.panel->reference_slopes) draw_slope(canvas, placed, order, covered, layout);
+    draw_slopes(canvas, placed, placed.panel->reference_slopes, covered, layout);
   }
   const std::string tag = tagged ? fmt::format("<b>({})</b> ", static_cast<char>('a' + number % 26)) : "";
   canvas.text({placed.frame.left, placed.frame.top - 6.5}, tag + placed.panel->title,
@@ -652,12 +673,12 @@ Look look_of_series(int n) {
   using Pattern = Look::Pattern;
   // Okabe and Ito's colours; shape, dash and hatching differ as well.
   static const std::vector<Look> looks{
-      {{0.835, 0.369, 0.0, 1.0}, 1.2, {5.0, 2.2}, MarkerShape::circle, 4.4, false, Pattern::hatched},
-      {{0.0, 0.447, 0.698, 1.0}, 1.2, {6.0, 2.0, 1.4, 2.0}, MarkerShape::square, 3.6, false, Pattern::light},
-      {{0.0, 0.52, 0.38, 1.0}, 1.2, {}, MarkerShape::diamond, 3.2, true, Pattern::solid},
-      {{0.70, 0.36, 0.55, 1.0}, 1.2, {1.4, 1.8}, MarkerShape::triangle, 4.0, false, Pattern::hatched},
-      {{0.80, 0.55, 0.0, 1.0}, 1.2, {9.0, 2.5}, MarkerShape::cross, 4.0, false, Pattern::light},
-      {{0.20, 0.20, 0.20, 1.0}, 1.2, {3.0, 1.5}, MarkerShape::triangle, 4.0, true, Pattern::solid},
+      {{0.835, 0.369, 0.0, 1.0}, 1.2, {4.0, 3.0}, MarkerShape::circle, 5.2, false, Pattern::hatched},
+      {{0.0, 0.447, 0.698, 1.0}, 1.2, {6.0, 2.0, 1.4, 2.0}, MarkerShape::square, 3.3, false, Pattern::light},
+      {{0.0, 0.52, 0.38, 1.0}, 1.2, {}, MarkerShape::diamond, 2.0, true, Pattern::solid},
+      {{0.70, 0.36, 0.55, 1.0}, 1.2, {1.4, 1.8}, MarkerShape::triangle, 4.4, false, Pattern::hatched},
+      {{0.80, 0.55, 0.0, 1.0}, 1.2, {9.0, 2.5}, MarkerShape::cross, 4.4, false, Pattern::light},
+      {{0.20, 0.20, 0.20, 1.0}, 1.2, {3.0, 1.5}, MarkerShape::triangle, 2.6, true, Pattern::solid},
   };
   return looks[static_cast<std::size_t>(((n % 6) + 6) % 6)];
 }

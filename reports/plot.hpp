@@ -46,7 +46,7 @@ struct Look {
   std::vector<double> dash;
   MarkerShape marker = MarkerShape::none;
   double marker_size = 4.0;  ///< [pt]
-  bool filled = false;       ///< the marker; an open one has a white inside
+  bool filled = false;       ///< the marker; an open one is white inside on a line, transparent without one
   enum class Pattern { solid, light, hatched } pattern = Pattern::solid;  ///< of a bar
 };
 
@@ -59,12 +59,13 @@ struct PlotCurve {
   std::string label;
   Look look;
   std::vector<double> x, y;
+  int layer = 0;  ///< curves of a higher layer are drawn over those of a lower one
 };
 
 /// Bars side by side over one name on the x axis, one a series of `Panel::bar_series`.
 struct BarGroup {
   std::string name;
-  std::vector<double> values;         ///< NaN where there is none; 0 or less is written out on a log axis
+  std::vector<double> values;         ///< NaN where there is none; a value that has no bar is written out
   std::vector<std::string> absences;  ///< why a value is NaN, a few words; same length as `values`
 };
 
@@ -87,7 +88,7 @@ struct Panel {
   std::vector<BarGroup> groups;        ///< a bar panel if not empty: then `x.range` and `x.ticks` are not read
   std::vector<BarSeries> bar_series;
   std::vector<LevelLine> levels;
-  std::vector<double> reference_slopes;  ///< orders to show as triangles, on two logarithmic axes, where there is room
+  std::vector<double> reference_slopes;  ///< orders to show as a fan of triangles, on two logarithmic axes, if there is room
   std::vector<std::string> notes;        ///< markup, set under the panel
 };
 

@@ -1,0 +1,620 @@
+#include "reports/document.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <mustache.hpp>
+#include <set>
+#include <string_view>
+
+#include "reports/canvas.hpp"
+#include "reports/figures.hpp"
+#include "vv/norms.hpp"
+
+namespace mpm::reports {
+
+std::string_view document_template();
+std::string_view document_style();
+
+namespace {
+
+using kainjow::mustache::data;
+using Parameters = std::vector<std::pair<std::string, vv::Json>>;
+
+std::string base64(const std::string& bytes) {
+  static constexpr std::string_view alphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    unsigned group = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      group = group << 8U | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0U);
+    for (std::size_t k = 0; k < 4; ++k)
+      text += k <= std::min<std::size_t>(3, bytes.size() - i) ? alphabet[group >> (18 - 6 * k) & 63U] : '=';
+  }
+  return text;
+}
+
+data list() { return data(data::type::list); }
+
+data object(const std::vector<std::pair<std::string, std::string>>& entries) {
+  data result(data::type::object);
+  for (const auto& [key, value] : entries) {
+    // An absent key, not an empty text, switches a section off.
+    if (!value.empty()) result.set(key, value);
+    else result.set(key, data(data::type::bool_false));
+  }
+  return result;
+}
+
+void set_list(data& target, const std::string& name, const data& entries) {
+  target.set(name, entries);
+  target.set("has_" + name, !entries.is_empty_list());
+}
+
+data flag(bool on) { return data(on ? data::type::bool_true : data::type::bool_false); }
+
+std::string count_markup(std::int64_t count) {
+  std::string digits = std::to_string(count);
+  for (auto at = static_cast<int>(digits.size()) - 3; at > (count < 0 ? 1 : 0); at -= 3)
+    digits.insert(static_cast<std::size_t>(at), "\u202f");
+  return digits;
+}
+
+// ---- statuses ---------------------------------------------------------------------------------------------------
+
+std::string chip(const char* kind, const char* word) {
+  return fmt::format("<span class=\"chip {}\">{}</span>", kind, word);
+}
+
+std::string chip_of(vv::CaseStatus status) {
+  switch (status) {
+    case vv::CaseStatus::pass: return chip("pass", "PASS");
+    case vv::CaseStatus::fail: return chip("fail", "FAIL");
+    case vv::CaseStatus::not_run: return chip("open", "NOT RUN");
+  }
+  return chip("fail", "UNKNOWN");
+}
+
+std::string chip_of(vv::GateStatus status) {
+  switch (status) {
+    case vv::GateStatus::pass: return chip("pass", "PASS");
+    case vv::GateStatus::fail: return chip("fail", "FAIL");
+    case vv::GateStatus::red_as_expected: return chip("expected", "red as expected");
+    case vv::GateStatus::unexpectedly_green: return chip("fail", "GREEN, must be red");
+  }
+  return chip("fail", "UNKNOWN");
+}
+
+// ---- gates ------------------------------------------------------------------------------------------------------
+
+/// A gate result with the runs it was applied to, named as everywhere in the report.
+struct PlacedGate {
+  const vv::GateResult* result = nullptr;
+  std::string scope;  ///< markup
+};
+
+std::string scope_of_series(const vv::SeriesVerdict& series) {
+  const std::string fixed = series.fixed.empty() ? "" : name_of_run(series.fixed) + ", ";
+  return fixed + fmt::format("{} cell sizes", series.cell_size.size());
+}
+
+std::vector<PlacedGate> gates_of(const vv::CaseVerdict& verdict) {
+  std::vector<PlacedGate> gates;
+  for (const vv::RunVerdict& run : verdict.runs)
+    for (const vv::GateResult& gate : run.gates) gates.push_back({&gate, name_of_run(run.parameters)});
+  for (const vv::SeriesVerdict& series : verdict.series)
+    for (const vv::GateResult& gate : series.gates) gates.push_back({&gate, scope_of_series(series)});
+  for (const vv::GateResult& gate : verdict.gates) gates.push_back({&gate, escaped(gate.scope)});
+  return gates;
+}
+
+std::string threshold_of(const vv::GateResult& gate) {
+  return (gate.op == "<=" ? "≤ " : gate.op == ">=" ? "≥ " : escaped(gate.op) + " ") + number_markup(gate.threshold);
+}
+
+std::string margin_of(const vv::GateResult& gate) {
+  const double margin = vv::margin(gate);
+  if (!std::isfinite(margin)) return "–";
+  const double percent = 100.0 * margin;
+  return (percent > 0.0 ? "+" : "") + number_markup(percent, 2) + " %";
+}
+
+std::string statistic_of(const vv::GateResult& gate) {
+  if (gate.statistic.empty() || gate.statistic == "value") return "";
+  std::string words = gate.statistic;
+  std::replace(words.begin(), words.end(), '_', ' ');
+  return ", " + escaped(words);
+}
+
+data row_of(const PlacedGate& gate) {
+  return object({{"id", gate.result->id},
+                 {"scope", gate.scope},
+                 {"metric", gate.result->metric},
+                 {"statistic", statistic_of(*gate.result)},
+                 {"value", number_markup(gate.result->value)},
+                 {"threshold", threshold_of(*gate.result)},
+                 {"margin", margin_of(*gate.result)},
+                 {"chip", chip_of(gate.result->status)},
+                 {"detail", gate.result->detail}});
+}
+
+/// Results under their gate, controls apart from gates.
+data gate_groups(const std::vector<PlacedGate>& gates, bool controls) {
+  std::vector<std::string> ids;
+  std::map<std::string, std::vector<PlacedGate>> by_id;
+  for (const PlacedGate& gate : gates) {
+    if (gate.result->must_fail != controls) continue;
+    if (by_id[gate.result->id].empty()) ids.push_back(gate.result->id);
+    by_id[gate.result->id].push_back(gate);
+  }
+  data groups = list();
+  for (const std::string& id : ids) {
+    const vv::GateResult& first = *by_id[id].front().result;
+    data group = object({{"id", id},
+                         {"metric", first.metric},
+                         {"statistic", statistic_of(first)},
+                         {"basis", first.basis},
+                         {"reason", first.reason}});
+    data rows = list();
+    for (const PlacedGate& gate : by_id[id]) rows << row_of(gate);
+    group.set("rows", rows);
+    groups << group;
+  }
+  return groups;
+}
+
+/// "smooth 7/7", one entry a gate.
+data gate_tallies(const std::vector<PlacedGate>& gates) {
+  std::vector<std::string> ids;
+  std::map<std::string, std::pair<int, int>> tally;
+  for (const PlacedGate& gate : gates) {
+    auto& [good, all] = tally[gate.result->id];
+    if (all == 0) ids.push_back(gate.result->id);
+    good += gate.result->good();
+    ++all;
+  }
+  data tallies = list();
+  for (const std::string& id : ids)
+    tallies << object({{"id", id}, {"tally", fmt::format("{}/{}", tally[id].first, tally[id].second)}});
+  return tallies;
+}
+
+// ---- tables of numbers ------------------------------------------------------------------------------------------
+
+data text_cells(const std::vector<std::string>& texts) {
+  data cells = list();
+  for (const std::string& text : texts) cells << object({{"text", text}});
+  return cells;
+}
+
+std::string metric_cell(const vv::RunVerdict& run, const std::string& metric) {
+  const auto found = run.metrics.find(metric);
+  return found == run.metrics.end() ? "–" : number_markup(found->second);
+}
+
+/// Metrics the runs have, as the catalogue orders them, then any it does not know.
+std::vector<std::string> metrics_in_order(const vv::CaseVerdict& verdict) {
+  std::set<std::string> present;
+  for (const vv::RunVerdict& run : verdict.runs)
+    for (const auto& [name, value] : run.metrics) present.insert(name);
+  std::vector<std::string> ordered;
+  for (const vv::Metric& metric : vv::metric_catalogue())
+    if (present.erase(metric.name) > 0) ordered.push_back(metric.name);
+  ordered.insert(ordered.end(), present.begin(), present.end());
+  return ordered;
+}
+
+/// The table a metric stands in: that of its reference, or of the word before its first dot.
+std::string table_of(const std::string& metric) {
+  const std::size_t dot = metric.find('.');
+  return dot == std::string::npos ? "" : metric.substr(0, dot);
+}
+
+std::string table_title(const std::string& table) {
+  if (table.empty()) return "Other measures";
+  if (table == "equilibrium" || table == "hencky" || table == "zhang") return "Against " + name_of_reference(table);
+  if (table == "floor") return "Model-form floor, Zhang − Hencky";
+  std::string title = table;
+  title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
+  return escaped(title);
+}
+
+/// The column's head inside its table: the metric without the table's name.
+std::string column_title(const std::string& metric) {
+  const std::size_t dot = metric.find('.');
+  std::string rest = dot == std::string::npos ? metric : metric.substr(dot + 1);
+  std::string unit;
+  for (const vv::Metric& known : vv::metric_catalogue())
+    if (known.name == metric && known.unit != "-" && !known.unit.empty()) unit = " [" + escaped(known.unit) + "]";
+  if (metric == "oscillation.hp") return "HP";
+  if (metric == "oscillation.ns") return "NS";
+  std::string suffix;
+  for (const auto& [ending, symbol] : {std::pair{".l1", " <i>L</i><sub>1</sub>"}, {".l2", " <i>L</i><sub>2</sub>"}, {".linf", " <i>L</i><sub>∞</sub>"}})
+    if (rest.ends_with(ending)) {
+      suffix = symbol;
+      rest.resize(rest.size() - std::string_view(ending).size());
+      break;
+    }
+  std::replace_if(rest.begin(), rest.end(), [](char c) { return c == '_' || c == '.'; }, ' ');
+  return escaped(rest) + suffix + unit;
+}
+
+data metric_tables(const vv::CaseVerdict& verdict) {
+  std::vector<std::string> names;
+  std::map<std::string, std::vector<std::string>> tables;
+  // These stand in the table of runs already.
+  const std::set<std::string> shown{"cell_crossings", "steps", "particle_steps", "completed", "wall_seconds"};
+  for (const std::string& metric : metrics_in_order(verdict)) {
+    if (shown.count(metric) > 0) continue;
+    if (tables[table_of(metric)].empty()) names.push_back(table_of(metric));
+    tables[table_of(metric)].push_back(metric);
+  }
+  data result = list();
+  for (const std::string& name : names) {
+    data table = object({{"title", table_title(name)}});
+    std::vector<std::string> heads;
+    for (const std::string& metric : tables[name]) heads.push_back(column_title(metric));
+    table.set("columns", text_cells(heads));
+    data rows = list();
+    for (const vv::RunVerdict& run : verdict.runs) {
+      std::vector<std::string> cells;
+      for (const std::string& metric : tables[name]) cells.push_back(metric_cell(run, metric));
+      data row = object({{"name", name_of_run(run.parameters)}});
+      row.set("values", text_cells(cells));
+      rows << row;
+    }
+    table.set("rows", rows);
+    result << table;
+  }
+  return result;
+}
+
+data run_rows(const vv::CaseVerdict& verdict) {
+  data rows = list();
+  for (const vv::RunVerdict& run : verdict.runs) {
+    const vv::Record& record = run.record;
+    data row = object({{"name", name_of_run(run.parameters)},
+                       {"ending", name_of_ending(record)},
+                       {"crossings", count_markup(record.cell_crossings)},
+                       {"steps", count_markup(record.cost.steps)},
+                       {"particle_steps", count_markup(record.cost.particle_steps)},
+                       {"time_step", number_markup(record.time_step)},
+                       {"end_time", number_markup(record.end_time)},
+                       {"wall", number_markup(record.cost.wall_seconds)}});
+    row.set("bad", flag(!record.completed()));
+    rows << row;
+  }
+  return rows;
+}
+
+std::string orders_markup(const vv::SeriesVerdict& series, const std::string& metric) {
+  const auto found = series.orders.find(metric);
+  if (found == series.orders.end()) return "–";
+  std::string text;
+  for (const double order : found->second)
+    text += (text.empty() ? "" : ", ") +
+            (std::isfinite(order) ? (order < 0.0 ? "−" : "") + fmt::format("{:.2f}", std::abs(order)) : "–");
+  return text.empty() ? "–" : text;
+}
+
+/// Metrics of a refinement: errors, not counts.
+data series_tables(const vv::CaseVerdict& verdict) {
+  data tables = list();
+  for (const vv::SeriesVerdict& series : verdict.series) {
+    data table = object({{"name", series.fixed.empty() ? "All runs" : name_of_run(series.fixed)}});
+    std::vector<std::string> sizes;
+    for (const double size : series.cell_size) sizes.push_back(fmt::format("<i>h</i> = {:.4g} mm", size * 1e3));
+    table.set("sizes", text_cells(sizes));
+    data rows = list();
+    for (const std::string& metric : metrics_in_order(verdict)) {
+      const auto found = series.metrics.find(metric);
+      if (found == series.metrics.end() || table_of(metric).empty()) continue;
+      std::vector<std::string> values;
+      for (const double value : found->second) values.push_back(number_markup(value));
+      data row = object({{"metric", metric}, {"orders", orders_markup(series, metric)}});
+      row.set("values", text_cells(values));
+      rows << row;
+    }
+    table.set("rows", rows);
+    tables << table;
+  }
+  return tables;
+}
+
+// ---- a case -----------------------------------------------------------------------------------------------------
+
+std::string sweep_sentence(const vv::CaseVerdict& verdict) {
+  std::string text;
+  for (const vv::SweepAxis& axis : verdict.definition.sweep) {
+    std::string values;
+    for (const vv::Json& value : axis.values)
+      values += (values.empty() ? "" : ", ") + name_of_parameter(axis.parameter, value);
+    text += (text.empty() ? "" : " × ") + values;
+  }
+  if (verdict.runs.empty()) return text;
+  return fmt::format("{}{}{} run{}", text, text.empty() ? "" : ": ", verdict.runs.size(), verdict.runs.size() == 1 ? "" : "s");
+}
+
+void set_exact_solutions(data& section, const vv::Case& definition) {
+  data others = list();
+  bool known = false;
+  for (const std::string& reference : definition.references) {
+    if (reference == "equilibrium" || reference == "hencky" || reference == "zhang") {
+      section.set("exact_" + reference, flag(true));
+      known = true;
+    } else {
+      others << object({{"name", name_of_reference(reference)}});
+    }
+  }
+  section.set("has_exact", flag(known || !others.is_empty_list()));
+  section.set("exact_other", others);
+}
+
+data figure_entries(const vv::CaseVerdict& verdict, const std::vector<DrawnFigure>& figures, int& number) {
+  data entries = list();
+  for (const vv::FigureRequest& request : verdict.definition.figures) {
+    const auto drawn = std::find_if(figures.begin(), figures.end(), [&](const DrawnFigure& figure) {
+      return figure.case_id == verdict.definition.id && figure.figure_id == request.id;
+    });
+    if (drawn == figures.end()) continue;
+    entries << object({{"anchor", verdict.definition.id + "-" + request.id},
+                       {"png", base64(drawn->png)},
+                       {"width", std::to_string(drawn->pixel_width / 2)},
+                       {"alt", fmt::format("{} of {}: {}", request.kind, verdict.definition.title, request.caption)},
+                       {"failure", drawn->failure},
+                       {"number", std::to_string(number++)},
+                       {"caption", request.caption}});
+  }
+  return entries;
+}
+
+data case_section(const vv::CaseVerdict& verdict, const std::vector<DrawnFigure>& figures, int& figure_number) {
+  const vv::Case& definition = verdict.definition;
+  data section = object({{"id", definition.id},
+                         {"title", definition.title},
+                         {"chip", chip_of(verdict.status)},
+                         {"paper", definition.figure_of_paper},
+                         {"sweep", sweep_sentence(verdict)},
+                         {"description", definition.description},
+                         {"not_run_reason", verdict.status == vv::CaseStatus::not_run ? verdict.not_run_reason : ""}});
+  set_exact_solutions(section, definition);
+  section.set("figures", figure_entries(verdict, figures, figure_number));
+  const std::vector<PlacedGate> gates = gates_of(verdict);
+  set_list(section, "gates", gate_groups(gates, false));
+  set_list(section, "controls", gate_groups(gates, true));
+  set_list(section, "series", series_tables(verdict));
+  set_list(section, "runs", run_rows(verdict));
+  section.set("metric_tables", metric_tables(verdict));
+  data notes = list();
+  for (const std::string& note : definition.notes) notes << object({{"text", note}});
+  set_list(section, "notes", notes);
+  return section;
+}
+
+data claims_row(const vv::CaseVerdict& verdict) {
+  data row = object({{"id", verdict.definition.id},
+                     {"paper", verdict.definition.figure_of_paper},
+                     {"chip", chip_of(verdict.status)}});
+  data claims = list();
+  for (const std::string& claim : verdict.definition.claims) claims << object({{"text", claim}});
+  row.set("list", claims);
+  row.set("gates", gate_tallies(gates_of(verdict)));
+  return row;
+}
+
+// ---- across cases -----------------------------------------------------------------------------------------------
+
+void set_verdict(data& page, const vv::CampaignVerdict& verdict) {
+  const vv::Counts counts = verdict.counts();
+  const bool failed = verdict.failed(), passed = verdict.passed();
+  page.set("verdict_word", failed ? "FAIL" : passed ? "PASS" : "INCOMPLETE");
+  page.set("verdict_class", failed ? "fail" : passed ? "pass" : "open");
+  std::string sentence = fmt::format("{} of {} cases passed; {} of {} gates hold; {} of {} controls are red as expected.",
+                                     counts.cases_passed, counts.cases, counts.gates_passed, counts.gates,
+                                     counts.controls_red, counts.controls);
+  if (counts.cases_not_run > 0)
+    sentence += fmt::format(" {} case{} not run.", counts.cases_not_run, counts.cases_not_run == 1 ? " was" : "s were");
+  page.set("verdict_sentence", sentence);
+  int completed = 0;
+  for (const vv::CaseVerdict& c : verdict.cases)
+    for (const vv::RunVerdict& run : c.runs) completed += run.record.completed();
+  for (const auto& [name, value] : std::map<std::string, int>{{"cases", counts.cases},
+                                                              {"cases_passed", counts.cases_passed},
+                                                              {"cases_failed", counts.cases_failed},
+                                                              {"cases_not_run", counts.cases_not_run},
+                                                              {"runs", counts.runs},
+                                                              {"runs_completed", completed},
+                                                              {"runs_ended_early", counts.runs - completed},
+                                                              {"gates", counts.gates},
+                                                              {"gates_passed", counts.gates_passed},
+                                                              {"gates_failed", counts.gates_failed},
+                                                              {"controls", counts.controls},
+                                                              {"controls_red", counts.controls_red},
+                                                              {"controls_green", counts.controls_green}})
+    page.set(name, std::to_string(value));
+  page.set("any_case_failed", flag(counts.cases_failed > 0));
+  page.set("any_case_not_run", flag(counts.cases_not_run > 0));
+  page.set("any_gate_failed", flag(counts.gates_failed > 0));
+  page.set("any_control_green", flag(counts.controls_green > 0));
+}
+
+void set_facts(data& page, const vv::CampaignVerdict& verdict) {
+  const auto stated = [](const std::string& text) { return text.empty() ? std::string("not stated") : text; };
+  page.set("revision", stated(verdict.revision));
+  page.set("date", stated(verdict.date));
+  page.set("host", stated(verdict.host));
+  page.set("processor", stated(verdict.processor));
+  page.set("compiler", stated(verdict.compiler));
+  page.set("build", stated(verdict.build));
+  page.set("threads", std::to_string(verdict.threads));
+  page.set("wall_seconds", number_markup(verdict.wall_seconds));
+  page.set("quick", flag(verdict.quick));
+  page.set("extent", verdict.quick ? "quick: only the cases marked as quick" : "all cases");
+  if (verdict.reused > 0) page.set("reused", std::to_string(verdict.reused));
+  else page.set("reused", flag(false));
+  std::set<std::string> others;
+  int stale = 0, total = 0;
+  for (const vv::CaseVerdict& c : verdict.cases)
+    for (const vv::RunVerdict& run : c.runs) {
+      ++total;
+      if (run.record.revision == verdict.revision) continue;
+      ++stale;
+      others.insert(stated(run.record.revision));
+    }
+  std::string names;
+  for (const std::string& name : others) names += (names.empty() ? "" : ", ") + name;
+  data entries = list();
+  if (stale > 0)
+    entries << object({{"count", std::to_string(stale)}, {"total", std::to_string(total)}, {"names", names}});
+  page.set("other_revisions", entries);
+}
+
+void set_failed_gates(data& page, const vv::CampaignVerdict& verdict) {
+  data failed = list(), not_measured = list(), not_run = list();
+  for (const vv::CaseVerdict& c : verdict.cases) {
+    if (c.status == vv::CaseStatus::not_run)
+      not_run << object({{"id", c.definition.id},
+                         {"reason", c.not_run_reason.empty() ? "no reason was given" : c.not_run_reason}});
+    for (const PlacedGate& gate : gates_of(c)) {
+      if (!gate.result->good()) {
+        data row = row_of(gate);
+        row.set("case_id", c.definition.id);
+        failed << row;
+      }
+      if (!std::isfinite(gate.result->value))
+        not_measured << object({{"text", fmt::format("{}, gate {} ({}): {}", escaped(c.definition.id),
+                                                     escaped(gate.result->id), gate.scope,
+                                                     gate.result->detail.empty() ? "no reason was given"
+                                                                                 : escaped(gate.result->detail))}});
+    }
+  }
+  set_list(page, "failed_gates", failed);
+  set_list(page, "not_measured", not_measured);
+  set_list(page, "not_run", not_run);
+}
+
+/// Whether a control of the case turned red on this run or on a series that contains it.
+bool covered_by_control(const vv::CaseVerdict& verdict, const vv::RunVerdict& run) {
+  const auto red = [](const vv::GateResult& gate) { return gate.status == vv::GateStatus::red_as_expected; };
+  if (std::any_of(run.gates.begin(), run.gates.end(), red)) return true;
+  return std::any_of(verdict.series.begin(), verdict.series.end(), [&](const vv::SeriesVerdict& series) {
+    const bool contains = std::all_of(series.fixed.begin(), series.fixed.end(), [&run](const auto& entry) {
+      return std::find(run.parameters.begin(), run.parameters.end(), entry) != run.parameters.end();
+    });
+    return contains && std::any_of(series.gates.begin(), series.gates.end(), red);
+  });
+}
+
+void set_runs_across_cases(data& page, const vv::CampaignVerdict& verdict) {
+  data oscillation = list(), failures = list(), hashes = list();
+  for (const vv::CaseVerdict& c : verdict.cases)
+    for (const vv::RunVerdict& run : c.runs) {
+      const vv::Record& record = run.record;
+      const std::string name = name_of_run(run.parameters), id = c.definition.id;
+      if (run.metrics.count("oscillation.hp") + run.metrics.count("oscillation.ns") > 0)
+        oscillation << object({{"case_id", id},
+                               {"name", name},
+                               {"hp", metric_cell(run, "oscillation.hp")},
+                               {"ns", metric_cell(run, "oscillation.ns")},
+                               {"crossings", count_markup(record.cell_crossings)}});
+      if (!record.completed()) {
+        const bool solver_said = record.failure.empty();
+        failures << object({{"case_id", id},
+                            {"name", name},
+                            {"ending", solver_said ? std::string(name_of(record.outcome.ending)) : record.failure},
+                            {"step", solver_said ? count_markup(record.outcome.step) : "–"},
+                            {"time", solver_said ? number_markup(record.outcome.time) : "–"},
+                            {"particle", solver_said && record.outcome.particle >= 0 ? count_markup(record.outcome.particle) : "–"},
+                            {"value", solver_said && record.outcome.particle >= 0 ? number_markup(record.outcome.value) : "–"},
+                            {"expected", covered_by_control(c, run) ? chip("expected", "by a control") : "no"}});
+      }
+      hashes << object({{"case_id", id},
+                        {"name", name},
+                        {"revision", record.revision},
+                        {"input", record.input_hash},
+                        {"program", record.program_hash},
+                        {"digest", record.digest},
+                        {"repeat", record.repeat_digest}});
+    }
+  set_list(page, "oscillation", oscillation);
+  set_list(page, "failures", failures);
+  page.set("hashes", hashes);
+}
+
+data glossary() {
+  data entries = list();
+  for (const vv::Metric& metric : vv::metric_catalogue())
+    entries << object({{"name", metric.name},
+                       {"unit", metric.unit == "-" ? "–" : metric.unit},
+                       {"reference", metric.reference.empty() ? "–" : metric.reference},
+                       {"meaning", metric.meaning}});
+  return entries;
+}
+
+}  // namespace
+
+std::vector<DrawnFigure> draw_figures(const vv::CampaignVerdict& verdict) {
+  std::vector<DrawnFigure> figures;
+  for (const vv::CaseVerdict& c : verdict.cases) {
+    if (c.status == vv::CaseStatus::not_run) continue;
+    for (const vv::FigureRequest& request : c.definition.figures) {
+      DrawnFigure figure{c.definition.id, request.id, "", 0, ""};
+      try {
+        const Picture picture = draw(plot_of(c, request));
+        const std::vector<unsigned char> png = picture.canvas.png();
+        figure.png.assign(png.begin(), png.end());
+        figure.pixel_width = picture.canvas.pixel_width();
+      } catch (const std::exception& error) {
+        figure.failure = error.what();
+      }
+      figures.push_back(std::move(figure));
+    }
+  }
+  return figures;
+}
+
+std::string report_html(const vv::CampaignVerdict& verdict, const std::vector<DrawnFigure>& figures) {
+  data page(data::type::object);
+  page.set("style", std::string(document_style()));
+  set_verdict(page, verdict);
+  set_facts(page, verdict);
+  set_failed_gates(page, verdict);
+  data case_list = list(), claims = list(), sections = list(), commands = list();
+  int figure_number = 1;
+  for (const vv::CaseVerdict& c : verdict.cases) {
+    case_list << object({{"id", c.definition.id}, {"title", c.definition.title}, {"chip", chip_of(c.status)}});
+    claims << claims_row(c);
+    sections << case_section(c, figures, figure_number);
+    const std::string file = c.definition.file.filename().string();
+    commands << object({{"file", file.empty() ? c.definition.id + ".json" : file}});
+  }
+  page.set("case_list", case_list);
+  page.set("claims", claims);
+  page.set("case_sections", sections);
+  page.set("commands", commands);
+  set_runs_across_cases(page, verdict);
+  page.set("glossary", glossary());
+  kainjow::mustache::mustache document{std::string(document_template())};
+  document.set_custom_escape(escaped);
+  const std::string html = document.render(page);
+  if (!document.error_message().empty()) throw CanvasError("the report's template is broken: " + document.error_message());
+  return html;
+}
+
+void write_report(const vv::CampaignVerdict& verdict, const std::filesystem::path& directory) {
+  const std::vector<DrawnFigure> figures = draw_figures(verdict);
+  std::filesystem::create_directories(directory / "figures");
+  std::string failures;
+  for (const DrawnFigure& figure : figures) {
+    const std::string name = figure.case_id + "-" + figure.figure_id;
+    if (figure.failure.empty()) vv::write_atomically(directory / "figures" / (name + ".png"), figure.png);
+    else failures += (failures.empty() ? "" : "; ") + name + ": " + figure.failure;
+  }
+  vv::write_atomically(directory / "report.html", report_html(verdict, figures));
+  if (!failures.empty()) throw CanvasError("figures could not be drawn: " + failures);
+}
+
+}  // namespace mpm::reports

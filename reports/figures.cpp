@@ -1,0 +1,796 @@
+#include "reports/figures.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <set>
+#include <stdexcept>
+
+#include "vv/norms.hpp"
+
+namespace mpm::reports {
+namespace {
+
+using Parameters = std::vector<std::pair<std::string, vv::Json>>;
+
+constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
+constexpr double profile_margin = 0.12;     // of the reference's range, on either side
+constexpr double tame_ratio = 30.0;         // an extreme beyond this times the next tamer one is off the axis
+constexpr double largest_error_shown = 10.0;  // relative errors above 1000 % say no more than "wrong"
+
+const Color floor_color{0.45, 0.45, 0.45, 1.0};
+const Color gate_color{0.75, 0.0, 0.15, 1.0};
+
+// ---- names ----------------------------------------------------------------------------------------------------
+
+std::string last_word(const std::string& pointer) {
+  std::string word = pointer.substr(pointer.rfind('/') + 1);
+  std::replace(word.begin(), word.end(), '_', ' ');
+  return word;
+}
+
+std::string scheme_name(const std::string& scheme) {
+  if (scheme == "mpm") return "MPM";
+  if (scheme == "ugimp") return "uGIMP";
+  if (scheme == "cpgimp") return "cpGIMP";
+  return escaped(scheme);
+}
+
+std::string plain_text(const vv::Json& value) {
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_number_float()) return fmt::format("{:g}", value.get<double>());
+  if (value.is_object())
+    for (const char* key : {"law", "type", "name"})
+      if (value.contains(key) && value[key].is_string()) return value[key].get<std::string>();
+  return value.dump();
+}
+
+/// Metres of a length as case files write it: a number, or "5 mm", "0.5 cm", "0.005 m".
+std::optional<double> length_of(const vv::Json& value) {
+  if (value.is_number()) return value.get<double>();
+  if (!value.is_string()) return std::nullopt;
+  const std::string text = value.get<std::string>();
+  std::size_t end = 0;
+  double number = 0.0;
+  try {
+    number = std::stod(text, &end);
+  } catch (const std::exception&) {
+    return std::nullopt;
+  }
+  while (end < text.size() && text[end] == ' ') ++end;
+  const std::string unit = text.substr(end);
+  if (unit == "mm") return number * 1e-3;
+  if (unit == "cm") return number * 1e-2;
+  if (unit == "m") return number;
+  return std::nullopt;
+}
+
+std::string millimetres(double metres) { return fmt::format("{:.4g}", metres * 1e3); }
+
+std::string norm_name(const std::string& norm) {
+  if (norm == "l1") return "<i>L</i><sub>1</sub>";
+  if (norm == "l2") return "<i>L</i><sub>2</sub>";
+  if (norm == "linf" || norm == "l_inf" || norm == "loo") return "<i>L</i><sub>∞</sub>";
+  return escaped(norm);
+}
+
+std::vector<std::string> split(const std::string& text, char separator) {
+  std::vector<std::string> parts{""};
+  for (const char c : text) {
+    if (c == separator) parts.emplace_back();
+    else parts.back() += c;
+  }
+  return parts;
+}
+
+std::string capitalised(std::string text) {
+  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  return text;
+}
+
+// ---- choosing and grouping runs ---------------------------------------------------------------------------------
+
+const vv::Json* value_of(const Parameters& parameters, const std::string& pointer) {
+  for (const auto& [name, value] : parameters)
+    if (name == pointer) return &value;
+  return nullptr;
+}
+
+bool selected(const vv::RunVerdict& run, const std::vector<vv::Selector>& where) {
+  return std::all_of(where.begin(), where.end(), [&run](const vv::Selector& selector) {
+    const vv::Json* value = value_of(run.parameters, selector.parameter);
+    return value && std::find(selector.values.begin(), selector.values.end(), *value) != selector.values.end();
+  });
+}
+
+/// The scene a run was asked for; nothing when the verdict does not hold it.
+const Scene* scene_of(const vv::CaseVerdict& verdict, const vv::RunVerdict& run) {
+  for (const vv::RunRequest& request : verdict.definition.runs)
+    if (request.parameters == run.parameters) return &request.scene;
+  return nullptr;
+}
+
+/// One run in its place in a picture.
+struct Member {
+  const vv::RunVerdict* run = nullptr;
+  const Scene* scene = nullptr;
+  std::string panel;   ///< markup; empty without a panel parameter
+  std::string series;  ///< markup
+  int look = 0;        ///< number of the series' look
+  std::string over;    ///< markup of the refined value; empty without one
+  double cell_size = nan_value;
+};
+
+/// Parameters that vary among the runs and are not already shown by panels, series or refinement.
+std::vector<std::string> unshown_parameters(const std::vector<const vv::RunVerdict*>& runs,
+                                            const vv::FigureRequest& request) {
+  std::vector<std::string> names;
+  if (runs.empty()) return names;
+  for (const auto& [pointer, first] : runs.front()->parameters) {
+    if (pointer == request.panels || pointer == request.series || pointer == request.over) continue;
+    const bool varies = std::any_of(runs.begin(), runs.end(), [&, p = pointer, f = first](const vv::RunVerdict* run) {
+      const vv::Json* value = value_of(run->parameters, p);
+      return !value || *value != f;
+    });
+    if (varies) names.push_back(pointer);
+  }
+  return names;
+}
+
+int look_number(const vv::Json& value, const std::string& label, std::vector<std::string>& seen) {
+  if (value == "mpm") return 0;
+  if (value == "ugimp") return 1;
+  if (value == "cpgimp") return 2;
+  const auto found = std::find(seen.begin(), seen.end(), label);
+  const auto number = static_cast<int>(found - seen.begin());
+  if (found == seen.end()) seen.push_back(label);
+  return number;
+}
+
+std::vector<Member> members_of(const vv::CaseVerdict& verdict, const vv::FigureRequest& request) {
+  std::vector<const vv::RunVerdict*> runs;
+  for (const vv::RunVerdict& run : verdict.runs)
+    if (selected(run, request.where)) runs.push_back(&run);
+  const std::vector<std::string> unshown = unshown_parameters(runs, request);
+  std::vector<std::string> seen;
+  std::vector<Member> members;
+  for (const vv::RunVerdict* run : runs) {
+    Member member;
+    member.run = run;
+    member.scene = scene_of(verdict, *run);
+    if (const vv::Json* value = value_of(run->parameters, request.panels))
+      member.panel = name_of_parameter(request.panels, *value);
+    const vv::Json* series = value_of(run->parameters, request.series);
+    if (series) member.series = name_of_parameter(request.series, *series);
+    for (const std::string& pointer : unshown)
+      if (const vv::Json* value = value_of(run->parameters, pointer))
+        member.series += (member.series.empty() ? "" : ", ") + name_of_parameter(pointer, *value);
+    if (member.series.empty()) member.series = "simulation";
+    member.look = look_number(series && unshown.empty() ? *series : vv::Json(), member.series, seen);
+    const vv::Json* over = value_of(run->parameters, request.over);
+    if (over) member.over = name_of_parameter(request.over, *over);
+    if (member.scene && member.scene->cell_size > 0.0) member.cell_size = member.scene->cell_size;
+    else if (over) member.cell_size = length_of(*over).value_or(nan_value);
+    members.push_back(std::move(member));
+  }
+  return members;
+}
+
+template <class Key>
+std::vector<std::string> distinct(const std::vector<Member>& members, Key key) {
+  std::vector<std::string> values;
+  for (const Member& member : members)
+    if (std::find(values.begin(), values.end(), key(member)) == values.end()) values.push_back(key(member));
+  return values;
+}
+
+std::vector<Member> in_panel(const std::vector<Member>& members, const std::string& panel) {
+  std::vector<Member> chosen;
+  std::copy_if(members.begin(), members.end(), std::back_inserter(chosen),
+               [&panel](const Member& member) { return member.panel == panel; });
+  return chosen;
+}
+
+const vv::Curve* curve_of(const vv::RunVerdict& run, const std::string& name, const std::string& source) {
+  for (const vv::Curve& curve : run.curves)
+    if (curve.name == name && curve.source == source) return &curve;
+  return nullptr;
+}
+
+/// "<i>h</i> = 20 mm" and "<i>h</i> = 10 mm" make "<i>h</i> = 20, 10 mm".
+std::string joined(std::string list, std::string next) {
+  const std::string symbol = "<i>h</i> = ", unit = " mm";
+  if (list.starts_with(symbol) && list.ends_with(unit) && next.starts_with(symbol)) {
+    list.resize(list.size() - unit.size());
+    next.erase(0, symbol.size());
+  }
+  return list + ", " + next;
+}
+
+/// One note for all runs of a series that ended alike; `missing` says which runs have nothing to show.
+template <class Missing>
+std::vector<std::string> notes_on_runs(const std::vector<Member>& members, Missing missing) {
+  struct Note {
+    std::string series, what, where;
+  };
+  std::vector<Note> notes;
+  for (const Member& member : members) {
+    const bool completed = member.run->record.completed();
+    if (completed && !missing(member)) continue;
+    const std::string what = completed ? "completed, but what is drawn here was not measured"
+                                       : "did not complete: " + name_of_ending(member.run->record);
+    if (member.over.empty()) {
+      notes.push_back({member.series, what, ""});
+      continue;
+    }
+    // Over a refinement, steps and times differ from run to run and would fill the page.
+    const std::string brief = what.substr(0, what.find(" at step"));
+    const auto same = std::find_if(notes.begin(), notes.end(),
+                                   [&](const Note& n) { return n.series == member.series && n.what == brief; });
+    if (same == notes.end()) notes.push_back({member.series, brief, member.over});
+    else same->where = joined(same->where, member.over);
+  }
+  std::vector<std::string> texts;
+  for (const Note& note : notes)
+    texts.push_back(note.series + (note.where.empty() ? "" : " (" + note.where + ")") + ": " + note.what);
+  return texts;
+}
+
+// ---- ranges -----------------------------------------------------------------------------------------------------
+
+/// The smallest range that holds what it is given; empty (lower > upper) at first.
+struct Extent {
+  double lower = std::numeric_limits<double>::infinity(), upper = -std::numeric_limits<double>::infinity();
+  void include(double value) {
+    if (!std::isfinite(value)) return;
+    lower = std::min(lower, value);
+    upper = std::max(upper, value);
+  }
+  bool empty() const { return lower > upper; }
+  double reach() const { return std::max(std::abs(lower), std::abs(upper)); }
+  /// With a margin on both sides, never of zero width.
+  Range widened(double margin) const {
+    if (empty()) return {0.0, 1.0};
+    const double span = upper > lower ? upper - lower : std::max(std::abs(upper), 1e-12);
+    return {lower - margin * span, upper + margin * span};
+  }
+};
+
+Extent extent_of(const std::vector<double>& values, double factor = 1.0) {
+  Extent extent;
+  for (const double value : values) extent.include(value * factor);
+  return extent;
+}
+
+/// Joins the extents of all series but the wild ones: going from the tamest up, it stops at the first whose reach is
+/// more than `tame_ratio` times the one before.
+Extent tame_extent(std::vector<Extent> extents) {
+  extents.erase(std::remove_if(extents.begin(), extents.end(), [](const Extent& e) { return e.empty(); }), extents.end());
+  std::sort(extents.begin(), extents.end(), [](const Extent& a, const Extent& b) { return a.reach() < b.reach(); });
+  Extent joined;
+  double previous = 0.0;
+  for (const Extent& extent : extents) {
+    if (previous > 0.0 && extent.reach() > tame_ratio * previous) break;
+    joined.include(extent.lower);
+    joined.include(extent.upper);
+    previous = extent.reach();
+  }
+  return joined;
+}
+
+/// Whole of a logarithmic axis: the values up to `largest_error_shown`, with room around them.
+Range logarithmic_range(const std::vector<double>& values) {
+  Extent extent;
+  for (const double value : values)
+    if (value > 0.0 && value <= largest_error_shown) extent.include(value);
+  if (extent.empty()) return {1e-3, largest_error_shown};
+  const double decades = std::max(1.0, std::log10(extent.upper / extent.lower));
+  const double room = std::pow(10.0, 0.08 * decades + 0.1);
+  return {extent.lower / room, extent.upper * room};
+}
+
+// ---- profiles ---------------------------------------------------------------------------------------------------
+
+/// How a quantity is shown: factor from SI, axis label.
+struct Quantity {
+  double factor = 1.0;
+  std::string label;
+};
+
+Quantity quantity_of(const std::string& name) {
+  if (name == "stress") return {1e-3, "stress <i>σ</i> [kPa]"};
+  if (name == "displacement") return {1e3, "displacement <i>u</i> [mm]"};
+  if (name == "velocity") return {1e3, "velocity <i>v</i> [mm/s]"};
+  if (name == "stress_error") return {1.0, "error of stress / max |<i>σ</i><sub>exact</sub>|"};
+  return {1.0, escaped(name)};
+}
+
+std::string height_label(const std::string& x_name) {
+  if (x_name == "position") return "height <i>x</i> [m]";
+  if (x_name == "initial_position") return "initial height <i>X</i> [m]";
+  return escaped(x_name);
+}
+
+Look reference_look(std::size_t number) {
+  Look look;
+  look.color = black;
+  look.line_width = 0.9;
+  if (number == 1) look.dash = {5.0, 2.0};
+  if (number == 2) look.dash = {1.5, 1.5};
+  return look;
+}
+
+/// The reference curves of a panel, one of each kind: runs of one panel share their exact solution, so the one that
+/// spans most stands for all; one that differs by more than 1 % in its values is another solution.
+std::vector<const vv::Curve*> reference_curves(const std::vector<Member>& members, const std::string& name,
+                                               const std::string& source) {
+  std::vector<const vv::Curve*> kept;
+  const auto span = [](const vv::Curve* c) { return extent_of(c->x).upper - extent_of(c->x).lower; };
+  for (const Member& member : members) {
+    const vv::Curve* curve = curve_of(*member.run, name, source);
+    if (!curve || curve->x.empty()) continue;
+    const double reach = extent_of(curve->y).reach();
+    const auto same = std::find_if(kept.begin(), kept.end(), [reach](const vv::Curve* other) {
+      const double o = extent_of(other->y).reach();
+      return std::abs(o - reach) <= 0.01 * std::max(o, reach) + 1e-300;
+    });
+    if (same == kept.end()) kept.push_back(curve);
+    else if (span(curve) > span(*same)) *same = curve;
+  }
+  return kept;
+}
+
+/// A profile has its abscissa along the vertical axis.
+PlotCurve profile_curve(const vv::Curve& curve, const std::string& label, const Look& look, double factor) {
+  PlotCurve plotted{label, look, curve.y, curve.x, 0};
+  for (double& value : plotted.x) value *= factor;
+  return plotted;
+}
+
+PlotCurve sorted_by_height(PlotCurve curve) {
+  std::vector<std::size_t> order(curve.y.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::stable_sort(order.begin(), order.end(), [&curve](std::size_t a, std::size_t b) { return curve.y[a] < curve.y[b]; });
+  PlotCurve sorted{curve.label, curve.look, {}, {}, 0};
+  for (const std::size_t i : order) {
+    sorted.x.push_back(curve.x[i]);
+    sorted.y.push_back(curve.y[i]);
+  }
+  return sorted;
+}
+
+PlotCurve zero_line(const Range& heights) {
+  Look look;
+  look.line_width = 0.6;
+  return {"", look, {0.0, 0.0}, {heights.lower, heights.upper}, 0};
+}
+
+Panel profile_panel(const std::vector<Member>& members, const vv::FigureRequest& request, const std::string& title) {
+  const Quantity quantity = quantity_of(request.quantity);
+  Panel panel;
+  panel.title = title;
+  panel.x.label = quantity.label;
+  Extent values, heights;
+  values.include(0.0);
+  heights.include(0.0);
+  std::string x_name = "position";
+  for (std::size_t i = 0; i < request.references.size(); ++i)
+    for (const vv::Curve* curve : reference_curves(members, request.quantity, request.references[i])) {
+      panel.curves.push_back(sorted_by_height(
+          profile_curve(*curve, name_of_reference(request.references[i]), reference_look(i), quantity.factor)));
+      for (const double v : panel.curves.back().x) values.include(v);
+      for (const double h : panel.curves.back().y) heights.include(h);
+    }
+  const bool referenced = !panel.curves.empty() && values.upper > values.lower;
+  std::vector<Extent> value_extents, height_extents;
+  for (const Member& member : members) {
+    const vv::Curve* curve = curve_of(*member.run, request.quantity, "run");
+    if (!curve) continue;
+    x_name = curve->x_name;
+    Look look = look_of_series(member.look);
+    look.line_width = 0.0;
+    panel.curves.push_back(profile_curve(*curve, member.series, look, quantity.factor));
+    value_extents.push_back(extent_of(curve->y, quantity.factor));
+    height_extents.push_back(extent_of(curve->x));
+  }
+  if (!referenced) {
+    const Extent tame = tame_extent(value_extents);
+    values.include(tame.lower);
+    values.include(tame.upper);
+  }
+  if (heights.upper <= heights.lower) heights.include(tame_extent(height_extents).upper);
+  panel.x.range = values.widened(profile_margin);
+  panel.y.range = {heights.lower, heights.upper + 0.05 * (heights.upper - heights.lower)};
+  if (!(panel.y.range.upper > panel.y.range.lower)) panel.y.range.upper = panel.y.range.lower + 1.0;
+  panel.y.label = height_label(x_name);
+  if (request.quantity == "stress_error")
+    panel.curves.insert(panel.curves.begin(), zero_line(panel.y.range));
+  panel.notes = notes_on_runs(members, [&](const Member& m) { return !curve_of(*m.run, request.quantity, "run"); });
+  return panel;
+}
+
+// ---- histories --------------------------------------------------------------------------------------------------
+
+Panel history_panel(const std::vector<Member>& members, const vv::CaseVerdict& verdict,
+                    const vv::FigureRequest& request, const std::string& title) {
+  Panel panel;
+  panel.title = title;
+  const auto& probes = verdict.definition.probes;
+  const auto probe = std::find_if(probes.begin(), probes.end(),
+                                  [&request](const vv::HistoryProbe& p) { return p.id == request.quantity; });
+  const Quantity quantity = quantity_of(probe != probes.end() ? probe->quantity : request.quantity);
+  panel.x.label = "time <i>t</i> [s]";
+  panel.y.label = quantity.label;
+  std::vector<Extent> extents;
+  Extent times;
+  times.include(0.0);
+  const auto add = [&](const vv::Curve& curve, const std::string& label, const Look& look) {
+    // Short dashes over long ones over solid lines.
+    const int layer = look.dash.empty() ? 0 : look.dash.size() > 2 ? 1 : 2;
+    PlotCurve plotted{label, look, curve.x, curve.y, layer};
+    for (double& value : plotted.y) value *= quantity.factor;
+    for (const double t : plotted.x) times.include(t);
+    extents.push_back(extent_of(plotted.y));
+    panel.curves.push_back(std::move(plotted));
+  };
+  for (const Member& member : members) {
+    // Histories all but coincide: the solid line lies wide beneath, the dashed ones over it.
+    Look look = look_of_series(member.look);
+    look.marker = MarkerShape::none;
+    if (look.dash.empty()) look.line_width = 2.4;
+    if (const vv::Curve* curve = curve_of(*member.run, request.quantity, "run")) add(*curve, member.series, look);
+  }
+  for (std::size_t i = 0; i < request.references.size(); ++i)
+    for (const vv::Curve* curve : reference_curves(members, request.quantity, request.references[i]))
+      add(*curve, name_of_reference(request.references[i]), reference_look(i));
+  panel.x.range = times.upper > times.lower ? Range{times.lower, times.upper} : Range{0.0, 1.0};
+  panel.y.range = tame_extent(extents).widened(0.08);
+  panel.notes = notes_on_runs(members, [&](const Member& m) { return !curve_of(*m.run, request.quantity, "run"); });
+  return panel;
+}
+
+// ---- metrics ----------------------------------------------------------------------------------------------------
+
+double metric_of(const vv::RunVerdict& run, const std::string& metric) {
+  const auto found = run.metrics.find(metric);
+  return found == run.metrics.end() ? nan_value : found->second;
+}
+
+std::string unit_of(const std::string& metric) {
+  for (const vv::Metric& known : vv::metric_catalogue())
+    if (known.name == metric && known.unit != "-") return " [" + escaped(known.unit) + "]";
+  return "";
+}
+
+/// Without the reference, which the panel's title names.
+std::string axis_name_of_metric(const std::string& metric) {
+  if (metric == "oscillation.hp") return "HP";
+  if (metric == "oscillation.ns") return "NS";
+  const std::vector<std::string> parts = split(metric, '.');
+  if (parts.size() == 3 && parts[0] != "floor") return norm_name(parts[2]) + " error of " + escaped(parts[1]);
+  return name_of_metric(metric) + unit_of(metric);
+}
+
+/// The reference that the material of a scene converges to.
+std::string own_reference(const Scene* scene) {
+  if (!scene || scene->bodies.empty()) return "";
+  return std::holds_alternative<ZhangElastic>(scene->bodies.front().material) ? "zhang" : "hencky";
+}
+
+/// Whether the difference between the two laws bounds this metric from below: stress compared with the other law's
+/// solution. A run compared with its own law's solution has no such floor.
+bool floor_applies(const Member& member, const std::string& metric) {
+  const std::string own = own_reference(member.scene);
+  if (own.empty() || !metric.ends_with(".stress.l2")) return false;
+  return metric.starts_with(own == "hencky" ? "zhang." : "hencky.");
+}
+
+/// The model-form floor over the cell sizes, if a run of the panel has it.
+std::optional<PlotCurve> floor_curve(const std::vector<Member>& members, const std::string& metric) {
+  std::vector<std::pair<double, double>> points;
+  for (const Member& member : members) {
+    const double value = metric_of(*member.run, "floor.stress.l2");
+    if (floor_applies(member, metric) && std::isfinite(value) && std::isfinite(member.cell_size))
+      points.emplace_back(member.cell_size * 1e3, value);
+  }
+  if (points.empty()) return std::nullopt;
+  std::sort(points.begin(), points.end());
+  Look look;
+  look.color = floor_color;
+  look.line_width = 1.0;
+  look.dash = {2.0, 2.0};
+  PlotCurve curve{"model-form floor (Zhang − Hencky)", look, {}, {}, 0};
+  for (const auto& [x, y] : points) {
+    if (!curve.x.empty() && curve.x.back() == x) continue;
+    curve.x.push_back(x);
+    curve.y.push_back(y);
+  }
+  return curve;
+}
+
+/// Observed orders of one series between neighbouring refinements, for a note; empty if the verdict has none.
+std::string order_note(const vv::CaseVerdict& verdict, const vv::FigureRequest& request, const Member& member,
+                       const std::string& metric) {
+  for (const vv::SeriesVerdict& series : verdict.series) {
+    if (series.across != request.over) continue;
+    const bool same = std::all_of(series.fixed.begin(), series.fixed.end(), [&member](const auto& entry) {
+      const vv::Json* value = value_of(member.run->parameters, entry.first);
+      return value && *value == entry.second;
+    });
+    const auto orders = series.orders.find(metric);
+    if (!same || orders == series.orders.end() || orders->second.empty()) continue;
+    std::string text;
+    for (const double order : orders->second)
+      text += (text.empty() ? "" : ", ") + (std::isfinite(order) ? (order < 0 ? "−" : "") + fmt::format("{:.2f}", std::abs(order)) : "–");
+    return "Observed orders of " + member.series + ": " + text;
+  }
+  return "";
+}
+
+Panel convergence_panel(const std::vector<Member>& members, const vv::CaseVerdict& verdict,
+                        const vv::FigureRequest& request, const std::string& metric, const std::string& title) {
+  Panel panel;
+  panel.title = title;
+  panel.x.label = "cell size <i>h</i> [mm]";
+  panel.y.label = axis_name_of_metric(metric);
+  const std::string against = split(metric, '.').size() == 3 ? "against " + capitalised(split(metric, '.')[0]) : "";
+  if (!against.empty()) panel.title += (title.empty() ? "" : ", ") + escaped(against);
+  panel.x.scale = panel.y.scale = Scale::logarithmic;
+  std::vector<double> values;
+  Extent sizes;
+  std::set<double, std::greater<>> ticks;
+  for (const std::string& label : distinct(members, [](const Member& m) { return m.series; })) {
+    std::vector<std::pair<double, double>> points;
+    const Member* first = nullptr;
+    for (const Member& member : members) {
+      if (member.series != label || !std::isfinite(member.cell_size)) continue;
+      if (!first) first = &member;
+      ticks.insert(member.cell_size);
+      sizes.include(member.cell_size * 1e3);
+      const double value = metric_of(*member.run, metric);
+      if (std::isfinite(value)) points.emplace_back(member.cell_size * 1e3, value);
+    }
+    std::sort(points.begin(), points.end());
+    if (!first || points.empty()) continue;
+    Look look = look_of_series(first->look);
+    look.marker_size = look.filled ? 4.0 : 4.8;
+    PlotCurve curve{label, look, {}, {}, 0};
+    for (const auto& [x, y] : points) {
+      curve.x.push_back(x);
+      curve.y.push_back(y);
+      values.push_back(y);
+    }
+    panel.curves.push_back(std::move(curve));
+    const std::string note = order_note(verdict, request, *first, metric);
+    if (!note.empty()) panel.notes.push_back(note);
+  }
+  if (auto floor = floor_curve(members, metric)) {
+    values.insert(values.end(), floor->y.begin(), floor->y.end());
+    panel.curves.insert(panel.curves.begin(), std::move(*floor));
+  }
+  if (sizes.empty()) sizes.include(1.0);
+  panel.x.range = {sizes.lower / 1.35, sizes.upper * 1.35};
+  for (const double size : ticks) panel.x.ticks.emplace_back(size * 1e3, millimetres(size));
+  panel.y.range = logarithmic_range(values);
+  panel.reference_slopes = {1.0, 2.0};
+  for (std::string& note : notes_on_runs(members, [&](const Member& m) { return !std::isfinite(metric_of(*m.run, metric)); }))
+    panel.notes.push_back(std::move(note));
+  return panel;
+}
+
+std::string threshold_label(const std::string& op, double threshold) {
+  const bool percent = threshold >= 1e-4 && threshold < 1.0;
+  return op + " " + (percent ? fmt::format("{:g} %", threshold * 100.0) : number_markup(threshold));
+}
+
+/// The thresholds that gates set on a metric, each once.
+std::vector<LevelLine> gate_levels(const vv::Case& definition, const std::string& metric) {
+  std::vector<LevelLine> levels;
+  for (const vv::Gate& gate : definition.gates) {
+    if (gate.metric != metric || gate.statistic != vv::Statistic::value || !(gate.threshold > 0.0)) continue;
+    const std::string label = threshold_label(gate.comparison == vv::Comparison::at_most ? "≤" : "≥", gate.threshold);
+    const bool known = std::any_of(levels.begin(), levels.end(), [&](const LevelLine& l) { return l.label == label; });
+    if (!known) levels.push_back({gate.threshold, label, "gate threshold", {gate_color, 1.0, {4.0, 2.0}}});
+  }
+  return levels;
+}
+
+Panel bar_panel(const std::vector<Member>& members, const vv::CaseVerdict& verdict, const std::string& metric) {
+  Panel panel;
+  panel.title = capitalised(name_of_metric(metric));
+  panel.y.scale = Scale::logarithmic;
+  panel.y.label = axis_name_of_metric(metric);
+  const auto series = distinct(members, [](const Member& m) { return m.series; });
+  const auto groups = distinct(members, [](const Member& m) { return m.panel; });
+  std::vector<double> values;
+  for (const std::string& label : series) {
+    const auto member = std::find_if(members.begin(), members.end(), [&](const Member& m) { return m.series == label; });
+    panel.bar_series.push_back({label, look_of_series(member->look)});
+  }
+  for (const std::string& name : groups) {
+    BarGroup group{name, {}, {}};
+    for (const std::string& label : series) {
+      const auto member = std::find_if(members.begin(), members.end(),
+                                       [&](const Member& m) { return m.series == label && m.panel == name; });
+      const double value = member == members.end() ? nan_value : metric_of(*member->run, metric);
+      group.values.push_back(value);
+      group.absences.push_back(member == members.end()              ? "not asked for"
+                               : member->run->record.completed() ? "not measured"
+                                                                 : "did not complete");
+      values.push_back(value);
+    }
+    panel.groups.push_back(std::move(group));
+  }
+  panel.levels = gate_levels(verdict.definition, metric);
+  for (const LevelLine& level : panel.levels) values.push_back(level.value);
+  panel.y.range = logarithmic_range(values);
+  panel.y.range.lower /= 2.0;
+  const bool cut = std::any_of(values.begin(), values.end(), [&panel](double v) { return v > panel.y.range.upper; });
+  if (cut) panel.y.range.upper *= 4.0;
+  return panel;
+}
+
+// ---- the stamp --------------------------------------------------------------------------------------------------
+
+std::string stamp_of(const vv::CaseVerdict& verdict, const std::vector<Member>& members) {
+  std::set<std::string> revisions;
+  std::string inputs;
+  for (const Member& member : members) {
+    if (!member.run->record.revision.empty()) revisions.insert(member.run->record.revision);
+    inputs += member.run->record.input_hash + "\n";
+  }
+  std::string revision;
+  for (const std::string& name : revisions) revision += (revision.empty() ? "" : ", ") + name.substr(0, 20);
+  const std::string input = members.size() == 1 ? "input " + members.front().run->record.input_hash
+                                                : fmt::format("inputs of {} runs {}", members.size(), vv::hash_of(inputs));
+  return escaped(fmt::format("mpmvv · {} · run at revision {} · {}", verdict.definition.id,
+                             revision.empty() ? "unknown" : revision, input));
+}
+
+}  // namespace
+
+std::string escaped(const std::string& text) {
+  std::string safe;
+  for (const char c : text) {
+    switch (c) {
+      case '&': safe += "&amp;"; break;
+      case '<': safe += "&lt;"; break;
+      case '>': safe += "&gt;"; break;
+      case '"': safe += "&quot;"; break;
+      case '\'': safe += "&#39;"; break;
+      default: safe += c;
+    }
+  }
+  return safe;
+}
+
+std::string name_of_parameter(const std::string& pointer, const vv::Json& value) {
+  const std::string text = plain_text(value);
+  if (pointer == "/scene/gravity/level") return escaped(text) + "G";
+  if (pointer == "/scene/scheme") return scheme_name(text);
+  if (pointer == "/scene/grid/cell_size") {
+    const auto metres = length_of(value);
+    return "<i>h</i> = " + (metres ? millimetres(*metres) + " mm" : escaped(text));
+  }
+  if (pointer == "/scene/update_order" && value.is_string()) {
+    std::string upper = text;
+    for (char& c : upper)
+      if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
+    return escaped(upper);
+  }
+  if (text == "linear_elastic") return "linear elastic (rate form)";
+  if (text == "zhang_elastic") return "Zhang’s law";
+  if (pointer == "/scene/gravity/loading") {
+    std::string plain = text == "ramp" ? "ramped load" : text == "step" ? "sudden load" : text == "staged" ? "staged load" : text;
+    if (value.is_object() && value.contains("duration")) plain += " over " + plain_text(value["duration"]);
+    return escaped(plain);
+  }
+  return escaped(last_word(pointer) + " " + text);
+}
+
+std::string name_of_run(const Parameters& parameters) {
+  std::string name;
+  for (const auto& [pointer, value] : parameters) name += (name.empty() ? "" : ", ") + name_of_parameter(pointer, value);
+  return name.empty() ? "the run" : name;
+}
+
+std::string name_of_reference(const std::string& reference) {
+  if (reference == "equilibrium") return "equilibrium, exact for every law";
+  if (reference == "hencky") return "Hencky, exact for the rate law";
+  if (reference == "zhang") return "Zhang, the published solution";
+  return escaped(reference);
+}
+
+std::string name_of_metric(const std::string& metric) {
+  if (metric == "oscillation.hp") return "high-pass content HP of the error";
+  if (metric == "oscillation.ns") return "null-space content NS of the stress";
+  const std::vector<std::string> parts = split(metric, '.');
+  if (parts.size() == 3) {
+    std::string field = parts[1];
+    std::replace(field.begin(), field.end(), '_', ' ');
+    if (parts[0] == "floor") return "model-form floor of " + escaped(field) + ", " + norm_name(parts[2]);
+    return norm_name(parts[2]) + " error of " + escaped(field) + ", " + escaped(capitalised(parts[0]));
+  }
+  std::string words = metric;
+  std::replace_if(words.begin(), words.end(), [](char c) { return c == '_' || c == '.'; }, ' ');
+  return escaped(words);
+}
+
+std::string name_of_ending(const vv::Record& record) {
+  if (!record.failure.empty()) return escaped(record.failure);
+  const Outcome& outcome = record.outcome;
+  const auto words = [&]() -> std::string {
+    switch (outcome.ending) {
+      case Ending::reached_time: return "reached its end time";
+      case Ending::at_rest: return "came to rest";
+      case Ending::not_at_rest: return "not at rest by the deadline";
+      case Ending::not_finite: return "a value is not finite";
+      case Ending::inverted: return "a particle inverted";
+      case Ending::outside_grid: return "a particle left the grid";
+      case Ending::domain_too_large: return "a domain outgrew its cell";
+    }
+    return "unknown ending";
+  }();
+  return words + fmt::format(" at step {}, <i>t</i> = {:.3g} s", outcome.step, outcome.time);
+}
+
+std::string number_markup(double value, int digits) {
+  if (!std::isfinite(value)) return "–";
+  if (value == 0.0) return "0";
+  const std::string sign = value < 0.0 ? "−" : "";
+  const double size = std::abs(value);
+  if (size >= 1e-3 && size < 1e5) {
+    const int exponent = static_cast<int>(std::floor(std::log10(size)));
+    if (size == std::floor(size)) return sign + fmt::format("{:.0f}", size);
+    return sign + fmt::format("{:.{}f}", size, std::clamp(digits - 1 - exponent, 0, 12));
+  }
+  const std::string text = fmt::format("{:.{}e}", size, digits - 1);
+  const std::size_t e = text.find('e');
+  std::string mantissa = text.substr(0, e);
+  if (mantissa.find('.') != std::string::npos) {
+    mantissa.erase(mantissa.find_last_not_of('0') + 1);
+    if (mantissa.back() == '.') mantissa.pop_back();
+  }
+  const int exponent = std::stoi(text.substr(e + 1));
+  const std::string power = fmt::format("10<sup>{}{}</sup>", exponent < 0 ? "−" : "", std::abs(exponent));
+  return sign + (mantissa == "1" ? power : mantissa + "×" + power);
+}
+
+Plot plot_of(const vv::CaseVerdict& verdict, const vv::FigureRequest& request) {
+  const std::vector<Member> members = members_of(verdict, request);
+  const auto panels = distinct(members, [](const Member& m) { return m.panel; });
+  Plot plot;
+  if (request.kind == "profiles") {
+    plot.frame_aspect = 0.95;
+    for (const std::string& name : panels) plot.panels.push_back(profile_panel(in_panel(members, name), request, name));
+  } else if (request.kind == "history") {
+    plot.frame_aspect = 0.68;
+    for (const std::string& name : panels)
+      plot.panels.push_back(history_panel(in_panel(members, name), verdict, request, name));
+  } else if (request.kind == "convergence") {
+    plot.frame_aspect = 0.9;
+    for (const std::string& name : panels)
+      for (const std::string& metric : request.metrics)
+        plot.panels.push_back(convergence_panel(in_panel(members, name), verdict, request, metric, name));
+  } else if (request.kind == "bars") {
+    plot.frame_aspect = 0.75;
+    if (!members.empty())
+      for (const std::string& metric : request.metrics) plot.panels.push_back(bar_panel(members, verdict, metric));
+  } else {
+    throw std::invalid_argument("a figure cannot be of kind \"" + request.kind + "\"");
+  }
+  plot.columns = plot.panels.size() > 1 ? 2 : 1;
+  if (plot.columns == 1) plot.width = 340.0;
+  if (plot.panels.empty()) {
+    Panel nothing;
+    nothing.notes = {"No run was selected for this figure."};
+    plot.panels.push_back(nothing);
+  }
+  plot.stamp = stamp_of(verdict, members);
+  return plot;
+}
+
+}  // namespace mpm::reports

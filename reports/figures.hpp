@@ -1,0 +1,42 @@
+#pragma once
+
+#include <string>
+
+#include "reports/plot.hpp"
+#include "vv/verdict.hpp"
+
+namespace mpm::reports {
+
+/// Text made safe for markup and HTML alike: & < > " ' become entities.
+std::string escaped(const std::string& text);
+
+/// A swept value as a person calls it, in markup that figures and HTML share: level 50 gives "50G", a scheme
+/// "cpGIMP", a cell size "<i>h</i> = 5 mm"; anything else "parameter value".
+std::string name_of_parameter(const std::string& pointer, const vv::Json& value);
+
+/// All swept values of a run, comma separated; "the run" when nothing is swept.
+std::string name_of_run(const std::vector<std::pair<std::string, vv::Json>>& parameters);
+
+/// What a metric measures, in markup short enough for an axis; an unknown metric keeps its own name.
+std::string name_of_metric(const std::string& metric);
+
+/// Markup for a reference solution: equilibrium, hencky, zhang, or its own name.
+std::string name_of_reference(const std::string& reference);
+
+/// How a run ended, a few words for a person: "left the grid at step 120, <i>t</i> = 0.5 s".
+std::string name_of_ending(const vv::Record& record);
+
+/// A pure number in markup with `digits` significant digits: 0.0123, 1.2×10<sup>−5</sup>, − (not finite: "–").
+std::string number_markup(double value, int digits = 3);
+
+/// The picture a request asks for, drawn from the curves and metrics of the verdict and from nothing else.
+///
+/// - Axes of profiles cover the reference solutions plus 12 % of their range, whatever the runs did; without a
+///   reference, and for histories, they cover every series whose extreme is at most 30 times the next tamer one's.
+/// - Logarithmic axes of metrics end at 10 (1000 %).
+/// - Runs that did not complete or lack a curve are named in a note under their panel.
+///
+/// Throws std::invalid_argument for a kind it does not know.
+Plot plot_of(const vv::CaseVerdict& verdict, const vv::FigureRequest& request);
+
+}  // namespace mpm::reports
