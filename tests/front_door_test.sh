@@ -56,7 +56,7 @@ case $1 in
     echo "CMAKE_HOME_DIRECTORY:INTERNAL=$PWD" >"$build/CMakeCache.txt"
     : >"$build/build.ninja" ;;
   --build)
-    [ -z "${FAKE_BAD_SOURCE-}" ] || { printf '[1/9] fine\nFAILED: a.o\na.cpp:1: error: what is this\n'; exit 1; }
+    [ -z "${FAKE_BAD_SOURCE-}" ] || { printf '[1/9] fine\nFAILED: a.o\nc++ -c a.cpp\na.cpp:1: error: what is this\n'; exit 1; }
     [ -e "$place/building" ] && echo overlap >>"$place/calls"
     : >"$place/building"
     sleep "${FAKE_BUILD_TIME:-0}"
@@ -207,7 +207,7 @@ expect_in err 'CMake Error at'; expect_not_in err 'looking'; expect_in err 'coul
 
 about='a build that fails'
 FAKE_BAD_SOURCE=yes open_door list; expect_code 2
-expect_in err 'what is this'; expect_not_in err 'fine'; expect_in err 'the build failed'
+expect_in err 'what is this'; expect_not_in err 'fine'; expect_not_in err 'c++ -c'; expect_in err 'the build failed'
 open_door list; expect_code 0
 
 about='two at once build one after the other'
