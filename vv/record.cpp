@@ -90,6 +90,7 @@ Ending ending_from(const std::string& name) {
 template <class ProfileType, class Visit>
 void for_each_field(ProfileType& profile, Visit visit) {
   visit("initial_position", profile.initial_position);
+  visit("displacement", profile.displacement);
   visit("position", profile.position);
   visit("stress", profile.stress);
   visit("volume", profile.volume);
@@ -191,7 +192,7 @@ double quantity_at(const ParticleFields& fields, const std::string& quantity, st
   const auto entry = [&](const std::vector<double>& field) {
     return field[particle * (field.size() / particles) + component];
   };
-  if (quantity == "displacement") return entry(fields.position) - entry(fields.initial_position);
+  if (quantity == "displacement") return entry(fields.displacement);
   if (quantity == "velocity") return entry(fields.velocity);
   if (quantity == "stress") return entry(fields.stress);
   throw std::invalid_argument("a history probe cannot record '" + quantity + "'");
@@ -209,8 +210,11 @@ class Sampler {
     if (start.mass.empty()) throw std::invalid_argument("a history probe needs a particle");
   }
 
-  /// The step that ends at `time` is the nearest to the next multiple of the interval, or past it.
-  bool due(double time, double time_step) const { return time + 0.5 * time_step >= next_; }
+  /// The step that ends at `time` is the nearest to the next multiple of the interval, or past it. Never
+  /// twice at one time, however the rounding falls.
+  bool due(double time, double time_step) const {
+    return time + 0.5 * time_step >= next_ && time > history_.time.back();
+  }
 
   void sample(const ParticleFields& fields, double time, double time_step) {
     if (!history_.time.empty() && history_.time.back() == time) return;
@@ -316,6 +320,7 @@ class Recorder {
   static Profile profile_of(const ParticleFields& fields) {
     const std::size_t particles = fields.mass.size();
     return {.initial_position = component_of(fields.initial_position, particles, along_column),
+            .displacement = component_of(fields.displacement, particles, along_column),
             .position = component_of(fields.position, particles, along_column),
             .stress = component_of(fields.stress, particles, along_column),
             .volume = fields.volume,
@@ -326,8 +331,9 @@ class Recorder {
 
   static std::string digest_of(const ParticleFields& fields, const Record& record) {
     Fnv1a hash;
-    for (const auto* field : {&fields.initial_position, &fields.position, &fields.velocity, &fields.half_size,
-                              &fields.stress, &fields.volume, &fields.initial_volume, &fields.mass}) {
+    for (const auto* field :
+         {&fields.initial_position, &fields.displacement, &fields.position, &fields.velocity,
+          &fields.half_size, &fields.stress, &fields.volume, &fields.initial_volume, &fields.mass}) {
       hash.add(*field);
     }
     for (const History& history : record.histories) {

@@ -16,6 +16,7 @@ namespace mpm::vv {
 /// Of a quantity with several components it holds the one along the column.
 struct Profile {
   std::vector<double> initial_position;  ///< X [m]
+  std::vector<double> displacement;      ///< x - X [m], kept apart so that it loses no digits in float
   std::vector<double> position;          ///< x [m]
   std::vector<double> stress;            ///< Cauchy [Pa]
   std::vector<double> volume;            ///< current [m] (length in 1D)
