@@ -112,7 +112,7 @@ std::vector<PlacedGate> gates_of(const vv::CaseVerdict& verdict) {
 }
 
 std::string threshold_of(const vv::GateResult& gate) {
-  return (gate.op == "<=" ? "≤ " : gate.op == ">=" ? "≥ " : escaped(gate.op) + " ") + number_markup(gate.threshold);
+  return (gate.op == "<=" ? "≤ " : gate.op == ">=" ? "≥ " : escaped(gate.op) + " ") + number_markup(gate.threshold, 0);
 }
 
 std::string margin_of(const vv::GateResult& gate) {

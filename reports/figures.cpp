@@ -210,32 +210,37 @@ std::string joined(std::string list, std::string next) {
   return list + ", " + next;
 }
 
+/// Where a run that the solver ended stopped: " at step 120, <i>t</i> = 0.5 s".
+std::string place_of_ending(const vv::Record& record) {
+  if (!record.failure.empty()) return "";
+  return fmt::format(" at step {}, <i>t</i> = {:.3g} s", record.outcome.step, record.outcome.time);
+}
+
 /// One note for all runs of a series that ended alike; `missing` says which runs have nothing to show.
 template <class Missing>
 std::vector<std::string> notes_on_runs(const std::vector<Member>& members, Missing missing) {
   struct Note {
-    std::string series, what, where;
+    std::string subject, what, where;
   };
   std::vector<Note> notes;
   for (const Member& member : members) {
     const bool completed = member.run->record.completed();
     if (completed && !missing(member)) continue;
-    const std::string what = completed ? "completed, but what is drawn here was not measured"
-                                       : "did not complete: " + name_of_ending(member.run->record);
+    const std::string verb = completed ? " completed" : " did not complete";
+    const std::string what = completed ? "what is drawn here was not measured" : name_of_ending(member.run->record);
     if (member.over.empty()) {
-      notes.push_back({member.series, what, ""});
+      notes.push_back({member.series + verb, what + (completed ? "" : place_of_ending(member.run->record)), ""});
       continue;
     }
     // Over a refinement, steps and times differ from run to run and would fill the page.
-    const std::string brief = what.substr(0, what.find(" at step"));
     const auto same = std::find_if(notes.begin(), notes.end(),
-                                   [&](const Note& n) { return n.series == member.series && n.what == brief; });
-    if (same == notes.end()) notes.push_back({member.series, brief, member.over});
+                                   [&](const Note& n) { return n.subject == member.series + verb && n.what == what; });
+    if (same == notes.end()) notes.push_back({member.series + verb, what, member.over});
     else same->where = joined(same->where, member.over);
   }
   std::vector<std::string> texts;
   for (const Note& note : notes)
-    texts.push_back(note.series + (note.where.empty() ? "" : " (" + note.where + ")") + ": " + note.what);
+    texts.push_back(note.subject + (note.where.empty() ? "" : " (" + note.where + ")") + ": " + note.what);
   return texts;
 }
 
@@ -583,7 +588,7 @@ Panel convergence_panel(const std::vector<Member>& members, const vv::CaseVerdic
 
 std::string threshold_label(const std::string& op, double threshold) {
   const bool percent = threshold >= 1e-4 && threshold < 1.0;
-  return op + " " + (percent ? fmt::format("{:g} %", threshold * 100.0) : number_markup(threshold));
+  return op + " " + (percent ? fmt::format("{:g} %", threshold * 100.0) : number_markup(threshold, 0));
 }
 
 /// The thresholds that gates set on a metric, each once.
@@ -721,20 +726,16 @@ std::string name_of_metric(const std::string& metric) {
 
 std::string name_of_ending(const vv::Record& record) {
   if (!record.failure.empty()) return escaped(record.failure);
-  const Outcome& outcome = record.outcome;
-  const auto words = [&]() -> std::string {
-    switch (outcome.ending) {
-      case Ending::reached_time: return "reached its end time";
-      case Ending::at_rest: return "came to rest";
-      case Ending::not_at_rest: return "not at rest by the deadline";
-      case Ending::not_finite: return "a value is not finite";
-      case Ending::inverted: return "a particle inverted";
-      case Ending::outside_grid: return "a particle left the grid";
-      case Ending::domain_too_large: return "a domain outgrew its cell";
-    }
-    return "unknown ending";
-  }();
-  return words + fmt::format(" at step {}, <i>t</i> = {:.3g} s", outcome.step, outcome.time);
+  switch (record.outcome.ending) {
+    case Ending::reached_time: return "reached its end time";
+    case Ending::at_rest: return "came to rest";
+    case Ending::not_at_rest: return "not at rest by the deadline";
+    case Ending::not_finite: return "a value is not finite";
+    case Ending::inverted: return "a particle inverted";
+    case Ending::outside_grid: return "a particle left the grid";
+    case Ending::domain_too_large: return "a domain outgrew its cell";
+  }
+  return "unknown ending";
 }
 
 std::string number_markup(double value, int digits) {
@@ -742,15 +743,16 @@ std::string number_markup(double value, int digits) {
   if (value == 0.0) return "0";
   const std::string sign = value < 0.0 ? "−" : "";
   const double size = std::abs(value);
-  if (size >= 1e-3 && size < 1e5) {
+  const bool shortest = digits <= 0;
+  if (size >= (shortest ? 1e-4 : 1e-2) && size < 1e5) {
+    if (shortest || size == std::floor(size)) return sign + fmt::format("{:.6g}", size);
     const int exponent = static_cast<int>(std::floor(std::log10(size)));
-    if (size == std::floor(size)) return sign + fmt::format("{:.0f}", size);
     return sign + fmt::format("{:.{}f}", size, std::clamp(digits - 1 - exponent, 0, 12));
   }
-  const std::string text = fmt::format("{:.{}e}", size, digits - 1);
+  const std::string text = fmt::format("{:.{}e}", size, shortest ? 5 : digits - 1);
   const std::size_t e = text.find('e');
   std::string mantissa = text.substr(0, e);
-  if (mantissa.find('.') != std::string::npos) {
+  if (shortest && mantissa.find('.') != std::string::npos) {
     mantissa.erase(mantissa.find_last_not_of('0') + 1);
     if (mantissa.back() == '.') mantissa.pop_back();
   }

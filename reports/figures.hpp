@@ -23,10 +23,11 @@ std::string name_of_metric(const std::string& metric);
 /// Markup for a reference solution: equilibrium, hencky, zhang, or its own name.
 std::string name_of_reference(const std::string& reference);
 
-/// How a run ended, a few words for a person: "left the grid at step 120, <i>t</i> = 0.5 s".
+/// How a run ended, a few words for a person: "a particle left the grid"; of a run that failed, why.
 std::string name_of_ending(const vv::Record& record);
 
-/// A pure number in markup with `digits` significant digits: 0.0123, 1.2×10<sup>−5</sup>, − (not finite: "–").
+/// A pure number in markup with `digits` significant digits: 0.0123, 1.20×10<sup>−5</sup>; with `digits` zero as short
+/// as six digits allow. A value that is not finite gives "–".
 std::string number_markup(double value, int digits = 3);
 
 /// The picture a request asks for, drawn from the curves and metrics of the verdict and from nothing else.

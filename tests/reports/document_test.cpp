@@ -1,0 +1,155 @@
+#include "reports/document.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <limits>
+
+#include "tests/support/demo_verdict.hpp"
+
+namespace mpm::reports {
+namespace {
+
+bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+std::string read(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+TEST(Document, SaysPassWhenAllIsGood) {
+  const vv::CampaignVerdict campaign = support::demo_campaign();
+  ASSERT_TRUE(campaign.passed());
+  const std::string html = report_html(campaign, {});
+  EXPECT_TRUE(has(html, "<span class=\"word\">PASS</span>"));
+  EXPECT_FALSE(has(html, "What failed"));
+}
+
+TEST(Document, SaysFailWhenAGateFailed) {
+  vv::CampaignVerdict campaign = support::demo_campaign();
+  campaign.cases[0].runs[2].gates[0].status = vv::GateStatus::fail;
+  campaign.cases[0].status = vv::CaseStatus::fail;
+  const std::string html = report_html(campaign, {});
+  EXPECT_TRUE(has(html, "<span class=\"word\">FAIL</span>"));
+  EXPECT_TRUE(has(html, "What failed"));
+  EXPECT_TRUE(has(html, "10 of 11 gates hold"));
+}
+
+TEST(Document, SaysFailWhenAControlStayedGreen) {
+  vv::CampaignVerdict campaign = support::demo_campaign();
+  campaign.cases[0].runs[9].gates[0].status = vv::GateStatus::unexpectedly_green;
+  campaign.cases[0].status = vv::CaseStatus::fail;
+  const std::string html = report_html(campaign, {});
+  EXPECT_TRUE(has(html, "<span class=\"word\">FAIL</span>"));
+  EXPECT_TRUE(has(html, "GREEN, must be red"));
+}
+
+TEST(Document, SaysWhatWasNotRun) {
+  vv::CampaignVerdict campaign = support::demo_campaign();
+  vv::CaseVerdict skipped;
+  skipped.definition.id = "skipped_case";
+  skipped.definition.title = "A case that was left out";
+  skipped.status = vv::CaseStatus::not_run;
+  skipped.not_run_reason = "it is not part of a quick report";
+  campaign.cases.push_back(skipped);
+  campaign.quick = true;
+  const std::string html = report_html(campaign, {});
+  EXPECT_FALSE(has(html, "<span class=\"word\">PASS</span>"));
+  EXPECT_TRUE(has(html, "What was not run"));
+  EXPECT_TRUE(has(html, "it is not part of a quick report"));
+  EXPECT_TRUE(has(html, "2 of 3 cases passed"));
+  EXPECT_TRUE(has(html, "./mpmvv report --quick"));
+}
+
+TEST(Document, SaysWhatWasNotMeasured) {
+  vv::CampaignVerdict campaign = support::demo_campaign();
+  vv::GateResult& gate = campaign.cases[0].runs[0].gates[0];
+  gate.value = std::numeric_limits<double>::quiet_NaN();
+  gate.status = vv::GateStatus::fail;
+  gate.detail = "the run has no stress";
+  const std::string html = report_html(campaign, {});
+  EXPECT_TRUE(has(html, "What was not measured"));
+  EXPECT_TRUE(has(html, "the run has no stress"));
+  EXPECT_FALSE(has(html, ">nan"));
+}
+
+TEST(Document, ListsEveryRunThatDidNotComplete) {
+  const std::string html = report_html(support::demo_campaign(), {});
+  EXPECT_TRUE(has(html, "12\u202f345"));
+  EXPECT_TRUE(has(html, "1.04"));
+  EXPECT_FALSE(has(html, "Every run ended where it was meant to"));
+}
+
+TEST(Document, EscapesWhatTheVerdictSays) {
+  vv::CampaignVerdict campaign = support::demo_campaign();
+  const std::string evil = "<script>alert('x')</script> & \"quoted\"";
+  campaign.host = campaign.cases[0].definition.title = campaign.cases[0].definition.notes[0] = evil;
+  campaign.cases[0].definition.claims = {evil};
+  campaign.cases[0].definition.figures[0].caption = evil;
+  campaign.cases[0].runs[0].gates[0].reason = evil;
+  campaign.cases[0].runs[0].gates[0].scope = evil;
+  campaign.cases[0].runs[0].record.failure = evil;
+  campaign.cases[0].runs[0].parameters[1].second = evil;
+  const std::string html = report_html(campaign, {{"column_figure_1", "stress", "bytes", 100, ""}});
+  EXPECT_FALSE(has(html, "<script"));
+  EXPECT_FALSE(has(html, "\"quoted\""));
+  EXPECT_TRUE(has(html, "&lt;script&gt;"));
+}
+
+TEST(Document, LoadsNothingFromElsewhere) {
+  const vv::CampaignVerdict campaign = support::demo_campaign();
+  const std::string html = report_html(campaign, {{"column_figure_1", "stress", "bytes", 100, ""}});
+  for (const char* loader : {"http://", "https://", "src=\"//", "<link", "<script", "@import", "url("})
+    EXPECT_FALSE(has(html, loader)) << loader;
+  EXPECT_TRUE(has(html, "src=\"data:image/png;base64,Ynl0ZXM=\""));
+}
+
+TEST(Document, LeavesNoTemplateTagsBehind) {
+  const std::string html = report_html(support::demo_campaign(), {});
+  EXPECT_FALSE(has(html, "{{"));
+  EXPECT_FALSE(has(html, "}}"));
+}
+
+TEST(Document, TellsWhenAFigureCouldNotBeDrawn) {
+  const std::string html = report_html(support::demo_campaign(), {{"column_figure_1", "stress", "", 0, "no renderer"}});
+  EXPECT_TRUE(has(html, "could not be drawn: no renderer"));
+  EXPECT_FALSE(has(html, "<img"));
+}
+
+TEST(Document, TellsOfRecordsOfAnotherRevision) {
+  vv::CampaignVerdict campaign = support::demo_campaign();
+  EXPECT_FALSE(has(report_html(campaign, {}), "recorded at another revision"));
+  campaign.cases[0].runs[0].record.revision = "feedbeef";
+  EXPECT_TRUE(has(report_html(campaign, {}), "1 of 27 runs were recorded at another revision: feedbeef"));
+}
+
+TEST(Document, FailedFiguresKeepTheirReason) {
+  vv::CampaignVerdict campaign = support::demo_campaign();
+  campaign.cases.resize(1);
+  campaign.cases[0].definition.figures.resize(1);
+  campaign.cases[0].definition.figures[0].kind = "pie";
+  const auto figures = draw_figures(campaign);
+  ASSERT_EQ(figures.size(), 1U);
+  EXPECT_TRUE(has(figures[0].failure, "pie"));
+}
+
+TEST(Document, WritesThePageAndItsPictures) {
+  const std::filesystem::path directory = std::filesystem::path(MPMVV_TEST_OUTPUT) / "document_test";
+  std::filesystem::remove_all(directory);
+  vv::CampaignVerdict campaign = support::demo_campaign();
+  campaign.cases[0].definition.figures.resize(1);
+  write_report(campaign, directory);
+  const std::string html = read(directory / "report.html");
+  EXPECT_TRUE(has(html, "</html>"));
+  EXPECT_TRUE(has(html, "data:image/png;base64,iVBOR"));
+  EXPECT_EQ(read(directory / "figures" / "column_figure_1-stress.png").substr(1, 3), "PNG");
+  EXPECT_EQ(read(directory / "figures" / "column_convergence-convergence.png").substr(1, 3), "PNG");
+  std::size_t files = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(directory)) files += entry.is_regular_file();
+  EXPECT_EQ(files, 3U);
+}
+
+}  // namespace
+}  // namespace mpm::reports

@@ -1,0 +1,244 @@
+#include "reports/plot.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace mpm::reports {
+namespace {
+
+constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
+
+std::string labels_of(const Ticks& ticks) {
+  const double step = ticks.major.size() > 1 ? ticks.major[1] - ticks.major[0] : 1.0;
+  std::string text;
+  for (const double t : ticks.major) text += (text.empty() ? "" : " ") + tick_label(t, step);
+  return text;
+}
+
+TEST(LinearTicks, AreRound) {
+  EXPECT_EQ(labels_of(linear_ticks({0.0, 1.0}, 5)), "0.0 0.2 0.4 0.6 0.8 1.0");
+  EXPECT_EQ(labels_of(linear_ticks({-9.8, 0.3}, 5)), "−7.5 −5.0 −2.5 0.0");
+  EXPECT_EQ(labels_of(linear_ticks({0.0, 490.0}, 5)), "0 100 200 300 400");
+  EXPECT_EQ(labels_of(linear_ticks({-0.3, 0.3}, 3)), "−0.2 0.0 0.2");
+}
+
+TEST(LinearTicks, StayInsideAndNeverTooMany) {
+  for (const Range range : {Range{-3.7, 11.2}, Range{1e-9, 3e-9}, Range{-1e12, 5e11}, Range{99.99, 100.01}})
+    for (int wanted = 2; wanted < 9; ++wanted) {
+      const Ticks ticks = linear_ticks(range, wanted);
+      ASSERT_FALSE(ticks.major.empty());
+      EXPECT_LE(static_cast<int>(ticks.major.size()), wanted + 1);
+      for (const double t : ticks.major) {
+        EXPECT_GE(t, range.lower - 1e-6 * (range.upper - range.lower));
+        EXPECT_LE(t, range.upper + 1e-6 * (range.upper - range.lower));
+      }
+      EXPECT_GE(ticks.minor.size() + 1, ticks.major.size());
+    }
+}
+
+TEST(LinearTicks, EmptyForAnEmptyOrInfiniteRange) {
+  EXPECT_TRUE(linear_ticks({1.0, 1.0}).major.empty());
+  EXPECT_TRUE(linear_ticks({0.0, std::numeric_limits<double>::infinity()}).major.empty());
+}
+
+TEST(LogarithmicTicks, DecadesWithMinorTicksBetween) {
+  const Ticks ticks = logarithmic_ticks({1e-4, 1e-1});
+  ASSERT_EQ(ticks.major.size(), 4U);
+  EXPECT_DOUBLE_EQ(ticks.major.front(), 1e-4);
+  EXPECT_DOUBLE_EQ(ticks.major.back(), 1e-1);
+  EXPECT_EQ(ticks.minor.size(), 24U);
+  EXPECT_NEAR(ticks.minor.front(), 2e-4, 1e-12);
+}
+
+TEST(LogarithmicTicks, ThinnedOutOverManyDecades) {
+  const Ticks ticks = logarithmic_ticks({1e-16, 1e4}, 7);
+  EXPECT_LE(ticks.major.size(), 7U);
+  EXPECT_GE(ticks.major.size(), 4U);
+}
+
+TEST(LogarithmicTicks, LessThanADecadeStillHasLabels) {
+  const Ticks ticks = logarithmic_ticks({1.5, 7.0});
+  ASSERT_EQ(ticks.major.size(), 2U);
+  EXPECT_DOUBLE_EQ(ticks.major[0], 2.0);
+  EXPECT_DOUBLE_EQ(ticks.major[1], 5.0);
+}
+
+TEST(LogarithmicTicks, NoneWithoutAPositiveRange) { EXPECT_TRUE(logarithmic_ticks({0.0, 1.0}).major.empty()); }
+
+TEST(TickLabel, HasATrueMinusAndNoNegativeZero) {
+  EXPECT_EQ(tick_label(-2.5, 0.5), "−2.5");
+  EXPECT_EQ(tick_label(-1e-17, 0.1), "0.0");
+  EXPECT_EQ(tick_label(0.25, 0.25), "0.25");
+  EXPECT_EQ(power_of_ten(-4), "10<sup>−4</sup>");
+}
+
+PlotCurve wave(const std::string& label, int look, double phase, int points = 40) {
+  PlotCurve curve{label, look_of_series(look), {}, {}, 0};
+  for (int i = 0; i < points; ++i) {
+    curve.x.push_back(i / (points - 1.0));
+    curve.y.push_back(0.5 + 0.45 * std::sin(9.0 * curve.x.back() + phase));
+  }
+  return curve;
+}
+
+Panel waves(int curves, double spread = 1.0) {
+  Panel panel;
+  panel.title = "a title";
+  panel.x = {"time <i>t</i> [s]", Scale::linear, {0.0, 1.0}, {}};
+  panel.y = {"stress <i>σ</i> [kPa]", Scale::linear, {0.0, 1.0}, {}};
+  for (int k = 0; k < curves; ++k) panel.curves.push_back(wave("curve " + std::to_string(k), k, spread * k));
+  return panel;
+}
+
+Panel falling_errors(const std::vector<double>& orders) {
+  Panel panel;
+  panel.x = {"<i>h</i> [mm]", Scale::logarithmic, {1.8, 56.0}, {}};
+  panel.y = {"error", Scale::logarithmic, {1e-6, 1.0}, {}};
+  panel.reference_slopes = {1.0, 2.0};
+  for (std::size_t k = 0; k < orders.size(); ++k) {
+    PlotCurve curve{"order", look_of_series(static_cast<int>(k)), {}, {}, 0};
+    for (const double h : {2.5, 5.0, 10.0, 20.0, 40.0}) {
+      curve.x.push_back(h);
+      curve.y.push_back(0.3 * std::pow(h / 40.0, orders[k]));
+    }
+    panel.curves.push_back(curve);
+  }
+  return panel;
+}
+
+Panel bars() {
+  Panel panel;
+  panel.y = {"HP", Scale::logarithmic, {1e-5, 1e-1}, {}};
+  panel.bar_series = {{"MPM", look_of_series(0)}, {"uGIMP", look_of_series(1)}, {"cpGIMP", look_of_series(2)}};
+  panel.groups = {{"1G", {1e-3, 1e-4, 2e-5}, {"", "", ""}}, {"50G", {nan_value, 20.0, 0.0}, {"did not complete", "", ""}}};
+  panel.levels = {{1e-2, "≤ 1 %", "gate threshold", {black, 1.0, {3.0, 2.0}}}};
+  return panel;
+}
+
+TEST(Plot, NothingCoversDataInABatteryOfPlots) {
+  std::vector<Plot> plots;
+  for (const int curves : {1, 3, 6})
+    for (const int columns : {1, 2}) {
+      Plot plot;
+      plot.columns = columns;
+      for (int p = 0; p < 4; ++p) plot.panels.push_back(waves(curves, 0.3 * p));
+      plots.push_back(plot);
+    }
+  for (const auto& orders : {std::vector<double>{1.0}, {2.0, 1.0}, {0.1, 0.5, 1.5, 2.0}, {-0.5, 2.5}}) {
+    Plot plot;
+    plot.panels = {falling_errors(orders)};
+    plots.push_back(plot);
+  }
+  Plot of_bars;
+  of_bars.panels = {bars()};
+  plots.push_back(of_bars);
+  for (const Plot& plot : plots) {
+    const Picture picture = draw(plot);
+    ASSERT_EQ(picture.layout.panels.size(), plot.panels.size());
+    EXPECT_GT(picture.layout.legend.width(), 0.0);
+    EXPECT_LE(picture.layout.legend.bottom, picture.canvas.height());
+    EXPECT_GE(picture.layout.legend.left, 0.0);
+    EXPECT_LE(picture.layout.legend.right, picture.canvas.width());
+    for (const Layout::Panel& panel : picture.layout.panels) {
+      EXPECT_FALSE(picture.layout.legend.intersects(panel.frame));
+      for (const Point& point : panel.points) {
+        EXPECT_FALSE(picture.layout.legend.contains(point));
+        EXPECT_TRUE(panel.frame.grown(0.01).contains(point));
+        for (const Rectangle& annotation : panel.annotations) EXPECT_FALSE(annotation.contains(point));
+      }
+    }
+  }
+}
+
+TEST(Plot, PanelsDoNotOverlap) {
+  Plot plot;
+  plot.columns = 2;
+  for (int p = 0; p < 4; ++p) plot.panels.push_back(waves(2));
+  const Layout layout = draw(plot).layout;
+  for (std::size_t i = 0; i < 4; ++i)
+    for (std::size_t k = 0; k < i; ++k) EXPECT_FALSE(layout.panels[i].frame.grown(8.0).intersects(layout.panels[k].frame));
+}
+
+TEST(Plot, ReferenceSlopesAreDrawnWhereThereIsRoom) {
+  Plot plot;
+  plot.panels = {falling_errors({2.0})};
+  EXPECT_EQ(draw(plot).layout.panels[0].annotations.size(), 1U);
+}
+
+TEST(Plot, ReferenceSlopesAreLeftOutWithoutRoom) {
+  Plot plot;
+  plot.panels = {falling_errors({1.0})};
+  for (int k = 0; k < 60; ++k) plot.panels[0].levels.push_back({std::pow(10.0, -6.0 + 0.1 * k), "", "", {}});
+  EXPECT_TRUE(draw(plot).layout.panels[0].annotations.empty());
+}
+
+TEST(Plot, PointsBeyondTheAxesAreCountedAndMarkedAtTheEdge) {
+  Plot plot;
+  plot.panels = {waves(1)};
+  PlotCurve wild{"wild", look_of_series(1), {0.5, 0.5, 1e9, 0.2}, {0.5, 1e30, 0.5, -7.0}, 0};
+  plot.panels.push_back(waves(1));
+  plot.panels[1].curves.push_back(wild);
+  const Picture picture = draw(plot);
+  EXPECT_EQ(picture.layout.panels[0].outside, 0);
+  EXPECT_EQ(picture.layout.panels[1].outside, 3);
+  for (const Point& point : picture.layout.panels[1].points) EXPECT_TRUE(picture.layout.panels[1].frame.contains(point));
+}
+
+TEST(Plot, ANoteTellsOfPointsBeyondTheAxes) {
+  Plot tame, wild;
+  tame.panels = {waves(1)};
+  wild.panels = {waves(1)};
+  wild.panels[0].curves[0].y[3] = 1e6;
+  EXPECT_GT(draw(wild).canvas.height(), draw(tame).canvas.height() + 9.0);
+}
+
+TEST(Plot, EveryPointIsAccountedFor) {
+  Plot plot;
+  plot.panels = {waves(3)};
+  plot.panels[0].curves[0].y[5] = nan_value;
+  plot.panels[0].curves[1].y[7] = std::numeric_limits<double>::infinity();
+  plot.panels[0].curves[2].y[9] = -3.0;
+  const Layout::Panel panel = draw(plot).layout.panels[0];
+  EXPECT_EQ(panel.not_finite, 2);
+  EXPECT_EQ(panel.outside, 1);
+  EXPECT_EQ(panel.points.size() + static_cast<std::size_t>(panel.not_finite), 120U);
+}
+
+TEST(Plot, ZeroOnALogarithmicAxisIsOutside) {
+  Plot plot;
+  plot.panels = {falling_errors({1.0})};
+  plot.panels[0].curves[0].y[0] = 0.0;
+  const Picture picture = draw(plot);
+  EXPECT_EQ(picture.layout.panels[0].outside, 1);
+  EXPECT_GT(picture.canvas.png().size(), 1000U);
+}
+
+TEST(Plot, BarsSayWhatIsMissing) {
+  Plot plot;
+  plot.panels = {bars()};
+  const Layout::Panel panel = draw(plot).layout.panels[0];
+  EXPECT_EQ(panel.not_finite, 1);  // the run that did not complete
+  EXPECT_EQ(panel.outside, 2);     // one cut by the axis, one zero
+  EXPECT_EQ(panel.annotations.size(), 2U);
+}
+
+TEST(Plot, LooksDifferInMoreThanColour) {
+  for (int i = 0; i < 6; ++i)
+    for (int k = 0; k < i; ++k) {
+      const Look a = look_of_series(i), b = look_of_series(k);
+      EXPECT_TRUE(a.marker != b.marker || a.filled != b.filled) << i << " " << k;
+      EXPECT_NE(a.dash, b.dash) << i << " " << k;
+    }
+}
+
+TEST(Plot, SurvivesCurvesWithoutPoints) {
+  Plot plot;
+  plot.panels = {waves(1)};
+  plot.panels[0].curves.push_back({"nothing", look_of_series(1), {}, {}, 0});
+  EXPECT_NO_THROW(draw(plot).canvas.png());
+}
+
+}  // namespace
+}  // namespace mpm::reports
