@@ -654,6 +654,13 @@ void require_schema(const Json& text) {
   throw Refusal(violation->pointer, "what case.schema.json allows", violation->description);
 }
 
+/// Keys and texts of the file can hold line breaks; a message cannot.
+std::string one_line(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < ' '; }, '?');
+  return text;
+}
+
 }  // namespace
 
 Case parse_case(const std::string& text, const std::filesystem::path& file) {
@@ -665,7 +672,8 @@ Case parse_case(const std::string& text, const std::filesystem::path& file) {
     require_schema(read.text);
     return read;
   } catch (const Refusal& refusal) {
-    throw CaseError(file.string(), refusal.pointer(), refusal.expected(), refusal.found());
+    throw CaseError(file.string(), one_line(refusal.pointer()), one_line(refusal.expected()),
+                    one_line(refusal.found()));
   }
 }
 

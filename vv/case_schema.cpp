@@ -5,12 +5,20 @@
 
 #include <algorithm>
 #include <memory>
+#include <vector>
+
+// g++ 12 warns, at -O3 and with sanitizers, of string and regex code that the validator only instantiates.
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wpragmas"
+#pragma GCC diagnostic ignored "-Wunknown-warning-option"
+#pragma GCC diagnostic ignored "-Wrestrict"
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #include <valijson/adapters/nlohmann_json_adapter.hpp>
 #include <valijson/schema.hpp>
 #include <valijson/schema_parser.hpp>
 #include <valijson/validation_results.hpp>
 #include <valijson/validator.hpp>
-#include <vector>
+#pragma GCC diagnostic pop
 
 namespace mpm::vv {
 namespace {

@@ -390,6 +390,8 @@ const std::vector<Malformed>& malformed_cases() {
       {R"([{"op": "add", "path": "/scene/bodies/1/material/poissons_ratio", "value": 0.3}])",
        "/scene/bodies/1/material/poissons_ratio", "one of the keys law, youngs_modulus", "\"poissons_ratio\"",
        Schema::refuses},
+      {R"([{"op": "add", "path": "/scene/two\nlines", "value": 1}])", "/scene/two?lines",
+       "one of the keys dimension", R"("two\nlines")", Schema::refuses},
       {R"([{"op": "remove", "path": "/title"}])", "/title", "a text", "nothing: the key is missing",
        Schema::refuses},
       {R"([{"op": "remove", "path": "/scene"}])", "/scene", "an object", "nothing: the key is missing",
