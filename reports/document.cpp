@@ -96,9 +96,11 @@ struct PlacedGate {
   std::string scope;  ///< markup
 };
 
-std::string scope_of_series(const vv::SeriesVerdict& series) {
-  const std::string fixed = series.fixed.empty() ? "" : name_of_run(series.fixed) + ", ";
-  return fixed + fmt::format("{} cell sizes", series.cell_size.size());
+/// The scope of a series gate with its runs named as everywhere in the report.
+std::string scope_of_series(const vv::SeriesVerdict& series, const vv::GateResult& gate) {
+  const std::string fixed = vv::scope_of(series.fixed);
+  if (series.fixed.empty() || !gate.scope.starts_with(fixed)) return escaped(gate.scope);
+  return name_of_run(series.fixed) + escaped(gate.scope.substr(fixed.size()));
 }
 
 std::vector<PlacedGate> gates_of(const vv::CaseVerdict& verdict) {
@@ -106,7 +108,7 @@ std::vector<PlacedGate> gates_of(const vv::CaseVerdict& verdict) {
   for (const vv::RunVerdict& run : verdict.runs)
     for (const vv::GateResult& gate : run.gates) gates.push_back({&gate, name_of_run(run.parameters)});
   for (const vv::SeriesVerdict& series : verdict.series)
-    for (const vv::GateResult& gate : series.gates) gates.push_back({&gate, scope_of_series(series)});
+    for (const vv::GateResult& gate : series.gates) gates.push_back({&gate, scope_of_series(series, gate)});
   for (const vv::GateResult& gate : verdict.gates) gates.push_back({&gate, escaped(gate.scope)});
   return gates;
 }
@@ -141,6 +143,32 @@ data row_of(const PlacedGate& gate) {
                  {"detail", gate.result->detail}});
 }
 
+/// Rows of one gate. Runs that gave the same value with the same result share a row, all of them named.
+data rows_of(const std::vector<PlacedGate>& gates) {
+  std::vector<PlacedGate> merged;
+  std::vector<int> counts;
+  for (const PlacedGate& gate : gates) {
+    const auto same = std::find_if(merged.begin(), merged.end(), [&gate](const PlacedGate& other) {
+      return std::isfinite(gate.result->value) && other.result->value == gate.result->value &&
+             other.result->threshold == gate.result->threshold && other.result->status == gate.result->status &&
+             other.result->detail == gate.result->detail;
+    });
+    if (same == merged.end()) {
+      merged.push_back(gate);
+      counts.push_back(1);
+    } else {
+      same->scope += "; " + gate.scope;
+      ++counts[static_cast<std::size_t>(same - merged.begin())];
+    }
+  }
+  data rows = list();
+  for (std::size_t i = 0; i < merged.size(); ++i) {
+    if (counts[i] > 1) merged[i].scope = fmt::format("{} runs alike<br><small>{}</small>", counts[i], merged[i].scope);
+    rows << row_of(merged[i]);
+  }
+  return rows;
+}
+
 /// Results under their gate, controls apart from gates.
 data gate_groups(const std::vector<PlacedGate>& gates, bool controls) {
   std::vector<std::string> ids;
@@ -158,9 +186,7 @@ data gate_groups(const std::vector<PlacedGate>& gates, bool controls) {
                          {"statistic", statistic_of(first)},
                          {"basis", first.basis},
                          {"reason", first.reason}});
-    data rows = list();
-    for (const PlacedGate& gate : by_id[id]) rows << row_of(gate);
-    group.set("rows", rows);
+    group.set("rows", rows_of(by_id[id]));
     groups << group;
   }
   return groups;
@@ -290,16 +316,6 @@ data run_rows(const vv::CaseVerdict& verdict) {
   return rows;
 }
 
-std::string orders_markup(const vv::SeriesVerdict& series, const std::string& metric) {
-  const auto found = series.orders.find(metric);
-  if (found == series.orders.end()) return "–";
-  std::string text;
-  for (const double order : found->second)
-    text += (text.empty() ? "" : ", ") +
-            (std::isfinite(order) ? (order < 0.0 ? "−" : "") + fmt::format("{:.2f}", std::abs(order)) : "–");
-  return text.empty() ? "–" : text;
-}
-
 /// Metrics of a refinement: errors, not counts.
 data series_tables(const vv::CaseVerdict& verdict) {
   data tables = list();
@@ -314,7 +330,9 @@ data series_tables(const vv::CaseVerdict& verdict) {
       if (found == series.metrics.end() || table_of(metric).empty()) continue;
       std::vector<std::string> values;
       for (const double value : found->second) values.push_back(number_markup(value));
-      data row = object({{"metric", metric}, {"orders", orders_markup(series, metric)}});
+      const auto orders = series.orders.find(metric);
+      data row = object({{"metric", metric},
+                         {"orders", orders == series.orders.end() ? "–" : orders_markup(orders->second)}});
       row.set("values", text_cells(values));
       rows << row;
     }
@@ -405,6 +423,18 @@ data claims_row(const vv::CaseVerdict& verdict) {
   return row;
 }
 
+/// Whether a control of the case turned red on this run or on a series that contains it.
+bool covered_by_control(const vv::CaseVerdict& verdict, const vv::RunVerdict& run) {
+  const auto red = [](const vv::GateResult& gate) { return gate.status == vv::GateStatus::red_as_expected; };
+  if (std::any_of(run.gates.begin(), run.gates.end(), red)) return true;
+  return std::any_of(verdict.series.begin(), verdict.series.end(), [&](const vv::SeriesVerdict& series) {
+    const bool contains = std::all_of(series.fixed.begin(), series.fixed.end(), [&run](const auto& entry) {
+      return std::find(run.parameters.begin(), run.parameters.end(), entry) != run.parameters.end();
+    });
+    return contains && std::any_of(series.gates.begin(), series.gates.end(), red);
+  });
+}
+
 // ---- across cases -----------------------------------------------------------------------------------------------
 
 void set_verdict(data& page, const vv::CampaignVerdict& verdict) {
@@ -418,9 +448,12 @@ void set_verdict(data& page, const vv::CampaignVerdict& verdict) {
   if (counts.cases_not_run > 0)
     sentence += fmt::format(" {} case{} not run.", counts.cases_not_run, counts.cases_not_run == 1 ? " was" : "s were");
   page.set("verdict_sentence", sentence);
-  int completed = 0;
+  int completed = 0, expected = 0;
   for (const vv::CaseVerdict& c : verdict.cases)
-    for (const vv::RunVerdict& run : c.runs) completed += run.record.completed();
+    for (const vv::RunVerdict& run : c.runs) {
+      completed += run.record.completed();
+      expected += !run.record.completed() && covered_by_control(c, run);
+    }
   for (const auto& [name, value] : std::map<std::string, int>{{"cases", counts.cases},
                                                               {"cases_passed", counts.cases_passed},
                                                               {"cases_failed", counts.cases_failed},
@@ -428,6 +461,7 @@ void set_verdict(data& page, const vv::CampaignVerdict& verdict) {
                                                               {"runs", counts.runs},
                                                               {"runs_completed", completed},
                                                               {"runs_ended_early", counts.runs - completed},
+                                                              {"runs_expected", expected},
                                                               {"gates", counts.gates},
                                                               {"gates_passed", counts.gates_passed},
                                                               {"gates_failed", counts.gates_failed},
@@ -494,18 +528,6 @@ void set_failed_gates(data& page, const vv::CampaignVerdict& verdict) {
   set_list(page, "failed_gates", failed);
   set_list(page, "not_measured", not_measured);
   set_list(page, "not_run", not_run);
-}
-
-/// Whether a control of the case turned red on this run or on a series that contains it.
-bool covered_by_control(const vv::CaseVerdict& verdict, const vv::RunVerdict& run) {
-  const auto red = [](const vv::GateResult& gate) { return gate.status == vv::GateStatus::red_as_expected; };
-  if (std::any_of(run.gates.begin(), run.gates.end(), red)) return true;
-  return std::any_of(verdict.series.begin(), verdict.series.end(), [&](const vv::SeriesVerdict& series) {
-    const bool contains = std::all_of(series.fixed.begin(), series.fixed.end(), [&run](const auto& entry) {
-      return std::find(run.parameters.begin(), run.parameters.end(), entry) != run.parameters.end();
-    });
-    return contains && std::any_of(series.gates.begin(), series.gates.end(), red);
-  });
 }
 
 void set_runs_across_cases(data& page, const vv::CampaignVerdict& verdict) {

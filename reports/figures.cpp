@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 #include <set>
 #include <stdexcept>
@@ -68,6 +69,19 @@ std::optional<double> length_of(const vv::Json& value) {
   return std::nullopt;
 }
 
+/// "ramped load over 1 s", "sudden load", "staged load (5, 3, 1 times full)".
+std::string loading_name(const vv::Json& loading) {
+  const std::string type = loading.value("type", "");
+  std::string name = type == "ramp" ? "ramped load" : type == "step" ? "sudden load" : type == "staged" ? "staged load" : type;
+  if (loading.contains("duration")) name += " over " + plain_text(loading["duration"]);
+  if (loading.contains("fractions") && loading["fractions"].is_array()) {
+    std::string fractions;
+    for (const vv::Json& fraction : loading["fractions"]) fractions += (fractions.empty() ? "" : ", ") + plain_text(fraction);
+    name += " (" + fractions + " times full)";
+  }
+  return escaped(name);
+}
+
 std::string millimetres(double metres) { return fmt::format("{:.4g}", metres * 1e3); }
 
 std::string norm_name(const std::string& norm) {
@@ -86,9 +100,27 @@ std::vector<std::string> split(const std::string& text, char separator) {
   return parts;
 }
 
+std::string spaced(std::string text) {
+  std::replace_if(text.begin(), text.end(), [](char c) { return c == '_' || c == '.'; }, ' ');
+  return text;
+}
+
+/// "<i>L</i><sub>2</sub> error of stress" of "hencky.stress.l2", "error of settlement" of "hencky.settlement"; nothing
+/// of a metric that compares with no reference.
+std::string error_name(const std::string& metric) {
+  const std::vector<std::string> parts = split(metric, '.');
+  const bool compares = parts[0] == "equilibrium" || parts[0] == "hencky" || parts[0] == "zhang" || parts[0] == "floor";
+  if (!compares || parts.size() < 2) return "";
+  return (parts.size() > 2 ? norm_name(parts[2]) + " error of " : "error of ") + escaped(spaced(parts[1]));
+}
+
 std::string capitalised(std::string text) {
   if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 'a' + 'A');
   return text;
+}
+
+std::string short_name_of_reference(const std::string& reference) {
+  return reference == "equilibrium" ? reference : escaped(capitalised(reference));
 }
 
 // ---- choosing and grouping runs ---------------------------------------------------------------------------------
@@ -147,7 +179,8 @@ int look_number(const vv::Json& value, const std::string& label, std::vector<std
   const auto found = std::find(seen.begin(), seen.end(), label);
   const auto number = static_cast<int>(found - seen.begin());
   if (found == seen.end()) seen.push_back(label);
-  return number;
+  // The first three looks belong to the schemes.
+  return number + 3;
 }
 
 std::vector<Member> members_of(const vv::CaseVerdict& verdict, const vv::FigureRequest& request) {
@@ -429,6 +462,9 @@ Panel history_panel(const std::vector<Member>& members, const vv::CaseVerdict& v
   const Quantity quantity = quantity_of(probe != probes.end() ? probe->quantity : request.quantity);
   panel.x.label = "time <i>t</i> [s]";
   panel.y.label = quantity.label;
+  const std::size_t symbol_end = panel.y.label.find("</i>");
+  if (probe != probes.end() && symbol_end != std::string::npos)
+    panel.y.label.insert(symbol_end + 4, "<sub>" + escaped(probe->id) + "</sub>");
   std::vector<Extent> extents;
   Extent times;
   times.include(0.0);
@@ -474,9 +510,8 @@ std::string unit_of(const std::string& metric) {
 std::string axis_name_of_metric(const std::string& metric) {
   if (metric == "oscillation.hp") return "HP";
   if (metric == "oscillation.ns") return "NS";
-  const std::vector<std::string> parts = split(metric, '.');
-  if (parts.size() == 3 && parts[0] != "floor") return norm_name(parts[2]) + " error of " + escaped(parts[1]);
-  return name_of_metric(metric) + unit_of(metric);
+  const std::string error = error_name(metric);
+  return (error.empty() ? name_of_metric(metric) : error) + unit_of(metric);
 }
 
 /// The reference that the material of a scene converges to.
@@ -527,10 +562,7 @@ std::string order_note(const vv::CaseVerdict& verdict, const vv::FigureRequest& 
     });
     const auto orders = series.orders.find(metric);
     if (!same || orders == series.orders.end() || orders->second.empty()) continue;
-    std::string text;
-    for (const double order : orders->second)
-      text += (text.empty() ? "" : ", ") + (std::isfinite(order) ? (order < 0 ? "−" : "") + fmt::format("{:.2f}", std::abs(order)) : "–");
-    return "Observed orders of " + member.series + ": " + text;
+    return "Observed orders of " + member.series + ": " + orders_markup(orders->second);
   }
   return "";
 }
@@ -541,8 +573,10 @@ Panel convergence_panel(const std::vector<Member>& members, const vv::CaseVerdic
   panel.title = title;
   panel.x.label = "cell size <i>h</i> [mm]";
   panel.y.label = axis_name_of_metric(metric);
-  const std::string against = split(metric, '.').size() == 3 ? "against " + capitalised(split(metric, '.')[0]) : "";
-  if (!against.empty()) panel.title += (title.empty() ? "" : ", ") + escaped(against);
+  const std::string subject = error_name(metric).empty()
+                                  ? capitalised(name_of_metric(metric))
+                                  : "against " + short_name_of_reference(metric.substr(0, metric.find('.')));
+  panel.title += (title.empty() ? "" : ", ") + subject;
   panel.x.scale = panel.y.scale = Scale::logarithmic;
   std::vector<double> values;
   Extent sizes;
@@ -591,14 +625,27 @@ std::string threshold_label(const std::string& op, double threshold) {
   return op + " " + (percent ? fmt::format("{:g} %", threshold * 100.0) : number_markup(threshold, 0));
 }
 
-/// The thresholds that gates set on a metric, each once.
-std::vector<LevelLine> gate_levels(const vv::Case& definition, const std::string& metric) {
-  std::vector<LevelLine> levels;
+/// The thresholds that gates set on a metric of the runs shown, each once, with the series they hold for.
+std::vector<LevelLine> gate_levels(const vv::Case& definition, const std::vector<Member>& members,
+                                   const std::string& metric) {
+  const std::size_t all = distinct(members, [](const Member& m) { return m.series; }).size();
+  std::map<std::string, std::pair<double, std::vector<Member>>> by_label;
   for (const vv::Gate& gate : definition.gates) {
     if (gate.metric != metric || gate.statistic != vv::Statistic::value || !(gate.threshold > 0.0)) continue;
-    const std::string label = threshold_label(gate.comparison == vv::Comparison::at_most ? "≤" : "≥", gate.threshold);
-    const bool known = std::any_of(levels.begin(), levels.end(), [&](const LevelLine& l) { return l.label == label; });
-    if (!known) levels.push_back({gate.threshold, label, "gate threshold", {gate_color, 1.0, {4.0, 2.0}}});
+    auto& [threshold, held] =
+        by_label[threshold_label(gate.comparison == vv::Comparison::at_most ? "≤" : "≥", gate.threshold)];
+    threshold = gate.threshold;
+    std::copy_if(members.begin(), members.end(), std::back_inserter(held),
+                 [&gate](const Member& member) { return selected(*member.run, gate.where); });
+  }
+  std::vector<LevelLine> levels;
+  for (const auto& [label, entry] : by_label) {
+    const auto series = distinct(entry.second, [](const Member& m) { return m.series; });
+    if (series.empty()) continue;
+    std::string subjects;
+    for (const std::string& name : series) subjects += (subjects.empty() ? " for " : ", ") + name;
+    levels.push_back({entry.first, label, "gate threshold" + (series.size() < all ? subjects : ""),
+                      {gate_color, 1.0, {4.0, 2.0}}});
   }
   return levels;
 }
@@ -629,7 +676,7 @@ Panel bar_panel(const std::vector<Member>& members, const vv::CaseVerdict& verdi
     }
     panel.groups.push_back(std::move(group));
   }
-  panel.levels = gate_levels(verdict.definition, metric);
+  panel.levels = gate_levels(verdict.definition, members, metric);
   for (const LevelLine& level : panel.levels) values.push_back(level.value);
   panel.y.range = logarithmic_range(values);
   panel.y.range.lower /= 2.0;
@@ -688,11 +735,7 @@ std::string name_of_parameter(const std::string& pointer, const vv::Json& value)
   }
   if (text == "linear_elastic") return "linear elastic (rate form)";
   if (text == "zhang_elastic") return "Zhang’s law";
-  if (pointer == "/scene/gravity/loading") {
-    std::string plain = text == "ramp" ? "ramped load" : text == "step" ? "sudden load" : text == "staged" ? "staged load" : text;
-    if (value.is_object() && value.contains("duration")) plain += " over " + plain_text(value["duration"]);
-    return escaped(plain);
-  }
+  if (pointer == "/scene/gravity/loading" && value.is_object()) return loading_name(value);
   return escaped(last_word(pointer) + " " + text);
 }
 
@@ -712,16 +755,11 @@ std::string name_of_reference(const std::string& reference) {
 std::string name_of_metric(const std::string& metric) {
   if (metric == "oscillation.hp") return "high-pass content HP of the error";
   if (metric == "oscillation.ns") return "null-space content NS of the stress";
-  const std::vector<std::string> parts = split(metric, '.');
-  if (parts.size() == 3) {
-    std::string field = parts[1];
-    std::replace(field.begin(), field.end(), '_', ' ');
-    if (parts[0] == "floor") return "model-form floor of " + escaped(field) + ", " + norm_name(parts[2]);
-    return norm_name(parts[2]) + " error of " + escaped(field) + ", " + escaped(capitalised(parts[0]));
-  }
-  std::string words = metric;
-  std::replace_if(words.begin(), words.end(), [](char c) { return c == '_' || c == '.'; }, ' ');
-  return escaped(words);
+  const std::string error = error_name(metric);
+  if (error.empty()) return escaped(spaced(metric));
+  const std::string reference = metric.substr(0, metric.find('.'));
+  if (reference == "floor") return "model-form floor, " + error;
+  return error + " against " + short_name_of_reference(reference);
 }
 
 std::string name_of_ending(const vv::Record& record) {
@@ -759,6 +797,17 @@ std::string number_markup(double value, int digits) {
   const int exponent = std::stoi(text.substr(e + 1));
   const std::string power = fmt::format("10<sup>{}{}</sup>", exponent < 0 ? "−" : "", std::abs(exponent));
   return sign + (mantissa == "1" ? power : mantissa + "×" + power);
+}
+
+std::string orders_markup(const std::vector<double>& orders) {
+  std::string text;
+  for (const double order : orders) {
+    if (!text.empty()) text += ", ";
+    // Rounded first, so that no zero has a sign.
+    const double rounded = std::round(order * 100.0);
+    text += std::isfinite(order) ? (rounded < 0.0 ? "−" : "") + fmt::format("{:.2f}", std::abs(rounded) / 100.0) : "–";
+  }
+  return text.empty() ? "–" : text;
 }
 
 Plot plot_of(const vv::CaseVerdict& verdict, const vv::FigureRequest& request) {

@@ -30,6 +30,9 @@ std::string name_of_ending(const vv::Record& record);
 /// as six digits allow. A value that is not finite gives "–".
 std::string number_markup(double value, int digits = 3);
 
+/// Observed orders between neighbouring refinements, in markup: "1.62, −0.04"; one that is not finite gives "–".
+std::string orders_markup(const std::vector<double>& orders);
+
 /// The picture a request asks for, drawn from the curves and metrics of the verdict and from nothing else.
 ///
 /// - Axes of profiles cover the reference solutions plus 12 % of their range, whatever the runs did; without a

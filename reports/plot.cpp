@@ -443,15 +443,35 @@ void draw_curve(Canvas& canvas, const Placed& placed, const PlotCurve& curve, La
   }
 }
 
+/// Words where a bar would stand, upright unless they are short; on white, so that no line crosses them.
 void write_in_bar_slot(Canvas& canvas, Point foot, const std::string& words, const Color& color, Layout::Panel& layout) {
   TextStyle style = text_style(Horizontal::left, Vertical::middle, type_size, color);
-  style.upward = true;
+  style.upward = words.size() > 3;
   const TextExtent extent = Canvas::measure(words, style);
+  Rectangle covered{foot.x - 5.0, foot.y - extent.width - 2.0, foot.x + 5.0, foot.y + 1.0};
+  if (!style.upward) {
+    covered = {foot.x - extent.width / 2 - 1.0, foot.y - type_size, foot.x + extent.width / 2 + 1.0, foot.y + 1.0};
+    style.horizontal = Horizontal::center;
+    style.vertical = Vertical::baseline;
+  }
+  canvas.rectangle(covered, white);
   canvas.text(foot, words, style);
-  layout.annotations.push_back({foot.x - extent.height() / 2, foot.y - extent.width, foot.x + extent.height() / 2, foot.y});
+  layout.annotations.push_back(covered);
 }
 
-void draw_bars(Canvas& canvas, const Placed& placed, Layout::Panel& layout) {
+/// Where a bar has no height that could be drawn, the words that stand in its place; else nothing.
+std::string words_instead_of_bar(const Panel& panel, const BarGroup& group, std::size_t series) {
+  const double value = group.values[series];
+  if (std::isfinite(value)) {
+    if (fraction(panel.y, value) > 0.0) return "";
+    return value == 0.0 ? "0" : fmt::format("{:.1g}", value);
+  }
+  const std::string why = series < group.absences.size() ? group.absences[series] : "";
+  return why.empty() ? "no value" : why;
+}
+
+/// Draws the bars, or with `words` what stands in place of those that cannot be drawn.
+void draw_bars(Canvas& canvas, const Placed& placed, bool words, Layout::Panel& layout) {
   const Panel& panel = *placed.panel;
   const Rectangle& f = placed.frame;
   const double group_width = f.width() / static_cast<double>(panel.groups.size());
@@ -464,19 +484,14 @@ void draw_bars(Canvas& canvas, const Placed& placed, Layout::Panel& layout) {
       const double x = f.left + (static_cast<double>(g) + 0.5) * group_width + offset * slot;
       const Look& look = panel.bar_series[s].look;
       const double value = group.values[s];
-      if (!std::isfinite(value)) {
-        ++layout.not_finite;
-        const std::string why = s < group.absences.size() ? group.absences[s] : "";
-        write_in_bar_slot(canvas, {x, f.bottom - 4.0}, why.empty() ? "no value" : why, look.color, layout);
+      const std::string instead = words_instead_of_bar(panel, group, s);
+      if (words != !instead.empty()) continue;
+      if (words) {
+        ++(std::isfinite(value) ? layout.outside : layout.not_finite);
+        write_in_bar_slot(canvas, {x, f.bottom - 4.0}, instead, look.color, layout);
         continue;
       }
       const double height = fraction(panel.y, value);
-      if (height <= 0.0) {
-        ++layout.outside;
-        write_in_bar_slot(canvas, {x, f.bottom - 4.0}, value == 0.0 ? "0" : fmt::format("{:.1g}", value), look.color,
-                          layout);
-        continue;
-      }
       Rectangle bar{x - bar_width / 2, f.bottom - std::min(height, 1.0) * f.height(), x + bar_width / 2, f.bottom};
       if (height > 1.0) {
         ++layout.outside;
@@ -587,8 +602,9 @@ Layout::Panel draw_panel(Canvas& canvas, const Placed& placed, std::size_t numbe
   Layout::Panel layout;
   layout.frame = placed.frame;
   draw_grid(canvas, placed);
-  if (!placed.panel->groups.empty()) draw_bars(canvas, placed, layout);
+  if (!placed.panel->groups.empty()) draw_bars(canvas, placed, false, layout);
   draw_levels(canvas, placed);
+  if (!placed.panel->groups.empty()) draw_bars(canvas, placed, true, layout);
   draw_frame(canvas, placed.frame);
   draw_x_ticks(canvas, placed);
   draw_y_ticks(canvas, placed);

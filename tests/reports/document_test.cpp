@@ -82,6 +82,22 @@ TEST(Document, ListsEveryRunThatDidNotComplete) {
   EXPECT_FALSE(has(html, "Every run ended where it was meant to"));
 }
 
+TEST(Document, RunsThatShareARowAreAllNamed) {
+  vv::CampaignVerdict campaign = support::demo_campaign();
+  for (vv::RunVerdict& run : campaign.cases[0].runs)
+    if (!run.gates[0].must_fail) run.gates[0].value = 0.0;
+  const std::string html = report_html(campaign, {});
+  EXPECT_TRUE(has(html, "11 runs alike<br><small>1G, MPM; 1G, uGIMP; 1G, cpGIMP; 10G, MPM"));
+}
+
+TEST(Document, AFailedRunDoesNotHideInASharedRow) {
+  vv::CampaignVerdict campaign = support::demo_campaign();
+  for (vv::RunVerdict& run : campaign.cases[0].runs)
+    if (!run.gates[0].must_fail) run.gates[0].value = 0.0;
+  campaign.cases[0].runs[4].gates[0].status = vv::GateStatus::fail;
+  EXPECT_TRUE(has(report_html(campaign, {}), "10 runs alike"));
+}
+
 TEST(Document, EscapesWhatTheVerdictSays) {
   vv::CampaignVerdict campaign = support::demo_campaign();
   const std::string evil = "<script>alert('x')</script> & \"quoted\"";

@@ -36,8 +36,11 @@ TEST(Names, AreThoseAPersonUses) {
   EXPECT_EQ(name_of_parameter("/scene/grid/cell_size", "2.5 mm"), "<i>h</i> = 2.5 mm");
   EXPECT_EQ(name_of_parameter("/scene/update_order", "musl"), "MUSL");
   EXPECT_EQ(name_of_parameter("/scene/some_thing", "a<b"), "some thing a&lt;b");
+  EXPECT_EQ(name_of_parameter("/scene/gravity/loading", {{"type", "ramp"}, {"duration", "1 s"}}), "ramped load over 1 s");
   EXPECT_EQ(name_of_run({}), "the run");
-  EXPECT_EQ(name_of_metric("hencky.stress.l2"), "<i>L</i><sub>2</sub> error of stress, Hencky");
+  EXPECT_EQ(name_of_metric("hencky.settlement"), "error of settlement against Hencky");
+  EXPECT_EQ(name_of_metric("cell_crossings"), "cell crossings");
+  EXPECT_EQ(name_of_metric("hencky.stress.l2"), "<i>L</i><sub>2</sub> error of stress against Hencky");
 }
 
 TEST(Numbers, KeepTheirDigits) {
@@ -150,9 +153,24 @@ TEST(Bars, ShowThresholdsOfTheirGates) {
   EXPECT_EQ(figure.panels[0].groups[3].name, "50G");
 }
 
+TEST(Bars, SayWhichSeriesAGateHolds) {
+  vv::CaseVerdict verdict = support::demo_levels();
+  EXPECT_EQ(plot(verdict, "oscillation").panels[0].levels.at(0).legend, "gate threshold");
+  verdict.definition.gates[0].where = {{support::demo::scheme_pointer, {"cpgimp"}}};
+  EXPECT_EQ(plot(verdict, "oscillation").panels[0].levels.at(0).legend, "gate threshold for cpGIMP");
+  verdict.definition.gates[0].where = {{support::demo::scheme_pointer, {"another"}}};
+  EXPECT_TRUE(plot(verdict, "oscillation").panels[0].levels.empty());
+}
+
+TEST(Orders, HaveNoNegativeZero) {
+  EXPECT_EQ(orders_markup({1.624, -0.04, -0.001}), "1.62, −0.04, 0.00");
+  EXPECT_EQ(orders_markup({std::numeric_limits<double>::quiet_NaN()}), "–");
+  EXPECT_EQ(orders_markup({}), "–");
+}
+
 TEST(Histories, HaveTheProbesQuantity) {
   const Plot figure = plot(support::demo_levels(), "settling");
-  EXPECT_EQ(figure.panels[0].y.label, "displacement <i>u</i> [mm]");
+  EXPECT_EQ(figure.panels[0].y.label, "displacement <i>u</i><sub>top</sub> [mm]");
   EXPECT_DOUBLE_EQ(figure.panels[0].x.range.upper, 2.0);
 }
 
