@@ -1,7 +1,8 @@
 #pragma once
 
-#include <cmath>
+#include <algorithm>
 
+#include "solver/scene.hpp"
 #include "solver/tensor.hpp"
 
 namespace mpm {

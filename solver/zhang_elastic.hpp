@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "solver/scene.hpp"
 #include "solver/tensor.hpp"
 
 namespace mpm {
