@@ -1,8 +1,8 @@
 #include "reports/canvas.hpp"
 
 #define GL_GLEXT_PROTOTYPES
-#include <GL/osmesa.h>
 #include <GL/glext.h>
+#include <GL/osmesa.h>
 #include <fontconfig/fontconfig.h>
 #include <pango/pangocairo.h>
 #include <png.h>
@@ -21,7 +21,8 @@ namespace {
 
 constexpr int supersampling = 2;
 constexpr int multisampling = 4;
-// The frame buffer holds this many rows at a time: with 16 samples a pixel a whole sheet does not fit the cache.
+// The frame buffer holds this many rows at a time: with 16 samples a pixel a whole sheet does not fit the
+// cache.
 constexpr int band_rows = 256;
 constexpr int atlas_width = 4096;
 // Height of a capital of Liberation Sans, as a fraction of the type size.
@@ -91,7 +92,8 @@ void main() {
 void expect_no_gl_error(const char* what) {
   const GLenum error = glGetError();
   if (error != GL_NO_ERROR)
-    throw CanvasError(std::string("offscreen rendering failed: GL error ") + std::to_string(error) + " while " + what);
+    throw CanvasError(std::string("offscreen rendering failed: GL error ") + std::to_string(error) +
+                      " while " + what);
 }
 
 GLuint compiled(GLenum kind, const char* source) {
@@ -108,8 +110,8 @@ GLuint compiled(GLenum kind, const char* source) {
   return shader;
 }
 
-/// The one owner of GL: a core profile context, its program and its frame buffers. One a thread, reused for every
-/// sheet.
+/// The one owner of GL: a core profile context, its program and its frame buffers. One a thread, reused for
+/// every sheet.
 class Renderer {
  public:
   static Renderer& of_this_thread() {
@@ -127,13 +129,15 @@ class Renderer {
     const int columns = width * supersampling, rows = height * supersampling;
     size_buffers(columns);
     upload(vertices, atlas);
-    std::vector<unsigned char> picture(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3);
+    std::vector<unsigned char> picture(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) *
+                                       3);
     std::vector<std::uint8_t> band(static_cast<std::size_t>(columns) * band_rows * 4);
     for (int top = 0; top < rows; top += band_rows) {
       const int band_height = std::min(band_rows, rows - top);
       draw_band(columns, top, batches);
       read_band(columns, band_height, band);
-      average(band, columns, band_height, picture.data() + static_cast<std::size_t>(top / supersampling * width) * 3);
+      average(band, columns, band_height,
+              picture.data() + static_cast<std::size_t>(top / supersampling * width) * 3);
     }
     expect_no_gl_error("drawing");
     return picture;
@@ -141,11 +145,19 @@ class Renderer {
 
  private:
   Renderer() {
-    const std::array<int, 9> attributes{OSMESA_FORMAT,  OSMESA_RGBA, OSMESA_PROFILE, OSMESA_CORE_PROFILE,
-                                        OSMESA_CONTEXT_MAJOR_VERSION, 3, OSMESA_CONTEXT_MINOR_VERSION, 3, 0};
+    const std::array<int, 9> attributes{OSMESA_FORMAT,
+                                        OSMESA_RGBA,
+                                        OSMESA_PROFILE,
+                                        OSMESA_CORE_PROFILE,
+                                        OSMESA_CONTEXT_MAJOR_VERSION,
+                                        3,
+                                        OSMESA_CONTEXT_MINOR_VERSION,
+                                        3,
+                                        0};
     context_ = OSMesaCreateContextAttribs(attributes.data(), nullptr);
     if (!context_)
-      throw CanvasError("no offscreen OpenGL 3.3: OSMesa gave no core profile context (Debian package libosmesa6)");
+      throw CanvasError(
+          "no offscreen OpenGL 3.3: OSMesa gave no core profile context (Debian package libosmesa6)");
     try {
       set_up();
     } catch (...) {
@@ -210,7 +222,8 @@ class Renderer {
     std::size_t offset = 0;
     for (GLuint i = 0; i < sizes.size(); ++i) {
       glEnableVertexAttribArray(i);
-      glVertexAttribPointer(i, sizes[i], GL_FLOAT, GL_FALSE, sizeof(Vertex), reinterpret_cast<const void*>(offset));
+      glVertexAttribPointer(i, sizes[i], GL_FLOAT, GL_FALSE, sizeof(Vertex),
+                            reinterpret_cast<const void*>(offset));
       offset += static_cast<std::size_t>(sizes[i]) * sizeof(float);
     }
     glBindTexture(GL_TEXTURE_2D, atlas_);
@@ -224,7 +237,8 @@ class Renderer {
   void draw_band(int columns, int top, const std::vector<Batch>& batches) {
     glBindFramebuffer(GL_FRAMEBUFFER, frame_[0]);
     glViewport(0, 0, columns, band_rows);
-    glUniform2f(glGetUniformLocation(program_, "size"), static_cast<float>(columns), static_cast<float>(band_rows));
+    glUniform2f(glGetUniformLocation(program_, "size"), static_cast<float>(columns),
+                static_cast<float>(band_rows));
     glUniform1f(glGetUniformLocation(program_, "top"), static_cast<float>(top));
     glDisable(GL_SCISSOR_TEST);
     glClearColor(1.0F, 1.0F, 1.0F, 1.0F);
@@ -234,7 +248,8 @@ class Renderer {
     glEnable(GL_BLEND);
     glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
     for (const Batch& batch : batches) {
-      const int upper = std::max(batch.clip.top - top, 0), lower = std::min(batch.clip.bottom - top, band_rows);
+      const int upper = std::max(batch.clip.top - top, 0),
+                lower = std::min(batch.clip.bottom - top, band_rows);
       if (lower <= upper || batch.clip.right <= batch.clip.left) continue;
       glScissor(batch.clip.left, upper, batch.clip.right - batch.clip.left, lower - upper);
       glDrawArrays(GL_TRIANGLES, static_cast<GLint>(batch.first), static_cast<GLsizei>(batch.count));
@@ -328,7 +343,8 @@ class Typesetter {
     pango_layout_set_attributes(layout.get(), attributes);
     pango_attr_list_unref(attributes);
     g_free(plain);
-    if (style.wrap_width > 0.0) pango_layout_set_width(layout.get(), static_cast<int>(style.wrap_width * PANGO_SCALE));
+    if (style.wrap_width > 0.0)
+      pango_layout_set_width(layout.get(), static_cast<int>(style.wrap_width * PANGO_SCALE));
     pango_layout_set_alignment(layout.get(), style.horizontal == Horizontal::left     ? PANGO_ALIGN_LEFT
                                              : style.horizontal == Horizontal::center ? PANGO_ALIGN_CENTER
                                                                                       : PANGO_ALIGN_RIGHT);
@@ -379,10 +395,17 @@ Point corner_offset(const TextExtent& extent, const TextStyle& style) {
   if (style.horizontal == Horizontal::center) offset.x = -extent.width / 2;
   if (style.horizontal == Horizontal::right) offset.x = -extent.width;
   switch (style.vertical) {
-    case Vertical::top: break;
-    case Vertical::middle: offset.y = capital_height / 2 * style.size - extent.ascent; break;
-    case Vertical::baseline: offset.y = -extent.ascent; break;
-    case Vertical::bottom: offset.y = -extent.height(); break;
+    case Vertical::top:
+      break;
+    case Vertical::middle:
+      offset.y = capital_height / 2 * style.size - extent.ascent;
+      break;
+    case Vertical::baseline:
+      offset.y = -extent.ascent;
+      break;
+    case Vertical::bottom:
+      offset.y = -extent.height();
+      break;
   }
   return offset;
 }
@@ -392,7 +415,8 @@ Point operator-(Point a, Point b) { return {a.x - b.x, a.y - b.y}; }
 Point operator*(double s, Point a) { return {s * a.x, s * a.y}; }
 bool finite(Point p) { return std::isfinite(p.x) && std::isfinite(p.y); }
 
-/// The part of a segment inside a rectangle, if any (Liang-Barsky); far-away points never reach single precision.
+/// The part of a segment inside a rectangle, if any (Liang-Barsky); far-away points never reach single
+/// precision.
 std::optional<std::pair<Point, Point>> clipped(Point a, Point b, const Rectangle& box) {
   const Point d = b - a;
   double enter = 0.0, leave = 1.0;
@@ -417,7 +441,8 @@ std::vector<Path> pieces_inside(const Path& points, const Rectangle& box) {
   std::vector<Path> pieces;
   bool open = false;
   for (std::size_t i = 0; i + 1 < points.size(); ++i) {
-    const auto part = finite(points[i]) && finite(points[i + 1]) ? clipped(points[i], points[i + 1], box) : std::nullopt;
+    const auto part =
+        finite(points[i]) && finite(points[i + 1]) ? clipped(points[i], points[i + 1], box) : std::nullopt;
     if (!part) {
       open = false;
       continue;
@@ -444,8 +469,10 @@ std::vector<Path> dashed(const Path& path, const std::vector<double>& dash) {
     while (length - at > left) {
       at += left;
       const Point here = path[i] + (at / length) * d;
-      if (on) dashes.back().push_back(here);
-      else dashes.push_back({here});
+      if (on)
+        dashes.back().push_back(here);
+      else
+        dashes.push_back({here});
       on = !on;
       entry = (entry + 1) % dash.size();
       left = std::max(dash[entry], 1e-3);
@@ -574,7 +601,8 @@ void Canvas::rule(Point from, Point to, double width, const Color& color) {
   const double unit = 1.0 / sheet_->pixels;
   const double thickness = std::max(1.0, std::round(width / unit)) * unit;
   const auto snapped = [unit](double v) { return std::round(v / unit) * unit; };
-  Rectangle box{std::min(from.x, to.x), std::min(from.y, to.y), std::max(from.x, to.x), std::max(from.y, to.y)};
+  Rectangle box{std::min(from.x, to.x), std::min(from.y, to.y), std::max(from.x, to.x),
+                std::max(from.y, to.y)};
   if (box.width() < box.height()) {
     box.left = snapped(box.left - thickness / 2);
     box.right = box.left + thickness;
@@ -609,10 +637,14 @@ Path marker_outline(MarkerShape shape) {
   };
   constexpr double quarter = std::numbers::pi / 2;
   switch (shape) {
-    case MarkerShape::square: return ring(4, 1.27, quarter / 2);
-    case MarkerShape::triangle: return ring(3, 1.4, -quarter);
-    case MarkerShape::diamond: return ring(4, 1.3, 0.0);
-    default: return ring(36, 1.0, 0.0);
+    case MarkerShape::square:
+      return ring(4, 1.27, quarter / 2);
+    case MarkerShape::triangle:
+      return ring(3, 1.4, -quarter);
+    case MarkerShape::diamond:
+      return ring(4, 1.3, 0.0);
+    default:
+      return ring(36, 1.0, 0.0);
   }
 }
 
@@ -668,17 +700,20 @@ void Canvas::text(Point anchor, const std::string& markup, const TextStyle& styl
   pango_cairo_show_layout(cairo.get(), layout.get());
   cairo_surface_flush(surface.get());
   if (cairo_status(cairo.get()) != CAIRO_STATUS_SUCCESS)
-    throw CanvasError(std::string("text could not be drawn: ") + cairo_status_to_string(cairo_status(cairo.get())));
+    throw CanvasError(std::string("text could not be drawn: ") +
+                      cairo_status_to_string(cairo_status(cairo.get())));
 
   const auto [texel_x, texel_y] = sheet_->atlas.place(columns, rows);
   const unsigned char* mask = cairo_image_surface_get_data(surface.get());
   const int stride = cairo_image_surface_get_stride(surface.get());
   for (int row = 0; row < rows; ++row)
-    std::copy_n(mask + static_cast<std::ptrdiff_t>(row) * stride, columns,
-                sheet_->atlas.coverage.begin() + static_cast<std::ptrdiff_t>(texel_y + row) * atlas_width + texel_x);
+    std::copy_n(
+        mask + static_cast<std::ptrdiff_t>(row) * stride, columns,
+        sheet_->atlas.coverage.begin() + static_cast<std::ptrdiff_t>(texel_y + row) * atlas_width + texel_x);
   const Point corner = style.upward ? anchor + Point{offset.y - pad, -offset.x + pad - rows / scale}
                                     : anchor + Point{offset.x - pad, offset.y - pad};
-  const int left = static_cast<int>(std::lround(corner.x * scale)), top = static_cast<int>(std::lround(corner.y * scale));
+  const int left = static_cast<int>(std::lround(corner.x * scale)),
+            top = static_cast<int>(std::lround(corner.y * scale));
   sheet_->textured_quad({left, top, left + columns, top + rows}, texel_x, texel_y, style.color);
 }
 
@@ -696,20 +731,24 @@ std::vector<unsigned char> Canvas::png() const {
     png_destroy_write_struct(&png, &info);
     throw CanvasError("libpng could not encode the picture");
   }
-  const auto columns = static_cast<png_uint_32>(sheet_->columns), rows = static_cast<png_uint_32>(sheet_->rows);
+  const auto columns = static_cast<png_uint_32>(sheet_->columns),
+             rows = static_cast<png_uint_32>(sheet_->rows);
   png_set_write_fn(png, &bytes, append_png, nullptr);
-  png_set_IHDR(png, info, columns, rows, 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
-               PNG_FILTER_TYPE_DEFAULT);
+  png_set_IHDR(png, info, columns, rows, 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
+               PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
   // Pixels a metre, so that the picture prints at its size in points.
   const auto density = static_cast<png_uint_32>(std::lround(sheet_->pixels * 72.0 / 0.0254));
   png_set_pHYs(png, info, density, density, PNG_RESOLUTION_METER);
   png_write_info(png, info);
-  for (png_uint_32 row = 0; row < rows; ++row) png_write_row(png, rgb.data() + static_cast<std::size_t>(row) * columns * 3);
+  for (png_uint_32 row = 0; row < rows; ++row)
+    png_write_row(png, rgb.data() + static_cast<std::size_t>(row) * columns * 3);
   png_write_end(png, info);
   png_destroy_write_struct(&png, &info);
   return bytes;
 }
 
-std::string resolved_family(const std::string& family) { return Typesetter::of_this_thread().resolve(family); }
+std::string resolved_family(const std::string& family) {
+  return Typesetter::of_this_thread().resolve(family);
+}
 
 }  // namespace mpm::reports

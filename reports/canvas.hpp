@@ -7,8 +7,8 @@
 
 namespace mpm::reports {
 
-/// A picture that could not be drawn: no offscreen renderer, a GL error, a font that is not the one asked for,
-/// or malformed markup. The message says which and what to do.
+/// A picture that could not be drawn: no offscreen renderer, a GL error, a font that is not the one asked
+/// for, or malformed markup. The message says which and what to do.
 class CanvasError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

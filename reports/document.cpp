@@ -24,7 +24,8 @@ using kainjow::mustache::data;
 using Parameters = std::vector<std::pair<std::string, vv::Json>>;
 
 std::string base64(const std::string& bytes) {
-  static constexpr std::string_view alphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  static constexpr std::string_view alphabet =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string text;
   text.reserve((bytes.size() + 2) / 3 * 4);
   for (std::size_t i = 0; i < bytes.size(); i += 3) {
@@ -43,8 +44,10 @@ data object(const std::vector<std::pair<std::string, std::string>>& entries) {
   data result(data::type::object);
   for (const auto& [key, value] : entries) {
     // An absent key, not an empty text, switches a section off.
-    if (!value.empty()) result.set(key, value);
-    else result.set(key, data(data::type::bool_false));
+    if (!value.empty())
+      result.set(key, value);
+    else
+      result.set(key, data(data::type::bool_false));
   }
   return result;
 }
@@ -63,7 +66,8 @@ std::string count_markup(std::int64_t count) {
   return digits;
 }
 
-// ---- statuses ---------------------------------------------------------------------------------------------------
+// ---- statuses
+// ---------------------------------------------------------------------------------------------------
 
 std::string chip(const char* kind, const char* word) {
   return fmt::format("<span class=\"chip {}\">{}</span>", kind, word);
@@ -71,24 +75,32 @@ std::string chip(const char* kind, const char* word) {
 
 std::string chip_of(vv::CaseStatus status) {
   switch (status) {
-    case vv::CaseStatus::pass: return chip("pass", "PASS");
-    case vv::CaseStatus::fail: return chip("fail", "FAIL");
-    case vv::CaseStatus::not_run: return chip("open", "NOT RUN");
+    case vv::CaseStatus::pass:
+      return chip("pass", "PASS");
+    case vv::CaseStatus::fail:
+      return chip("fail", "FAIL");
+    case vv::CaseStatus::not_run:
+      return chip("open", "NOT RUN");
   }
   return chip("fail", "UNKNOWN");
 }
 
 std::string chip_of(vv::GateStatus status) {
   switch (status) {
-    case vv::GateStatus::pass: return chip("pass", "PASS");
-    case vv::GateStatus::fail: return chip("fail", "FAIL");
-    case vv::GateStatus::red_as_expected: return chip("expected", "red as expected");
-    case vv::GateStatus::unexpectedly_green: return chip("fail", "GREEN, must be red");
+    case vv::GateStatus::pass:
+      return chip("pass", "PASS");
+    case vv::GateStatus::fail:
+      return chip("fail", "FAIL");
+    case vv::GateStatus::red_as_expected:
+      return chip("expected", "red as expected");
+    case vv::GateStatus::unexpectedly_green:
+      return chip("fail", "GREEN, must be red");
   }
   return chip("fail", "UNKNOWN");
 }
 
-// ---- gates ------------------------------------------------------------------------------------------------------
+// ---- gates
+// ------------------------------------------------------------------------------------------------------
 
 /// A gate result with the runs it was applied to, named as everywhere in the report.
 struct PlacedGate {
@@ -114,7 +126,10 @@ std::vector<PlacedGate> gates_of(const vv::CaseVerdict& verdict) {
 }
 
 std::string threshold_of(const vv::GateResult& gate) {
-  return (gate.op == "<=" ? "≤ " : gate.op == ">=" ? "≥ " : escaped(gate.op) + " ") + number_markup(gate.threshold, 0);
+  return (gate.op == "<="   ? "≤ "
+          : gate.op == ">=" ? "≥ "
+                            : escaped(gate.op) + " ") +
+         number_markup(gate.threshold, 0);
 }
 
 std::string margin_of(const vv::GateResult& gate) {
@@ -150,20 +165,22 @@ data rows_of(const std::vector<PlacedGate>& gates) {
   for (const PlacedGate& gate : gates) {
     const auto same = std::find_if(merged.begin(), merged.end(), [&gate](const PlacedGate& other) {
       return std::isfinite(gate.result->value) && other.result->value == gate.result->value &&
-             other.result->threshold == gate.result->threshold && other.result->status == gate.result->status &&
-             other.result->detail == gate.result->detail;
+             other.result->threshold == gate.result->threshold &&
+             other.result->status == gate.result->status && other.result->detail == gate.result->detail;
     });
     if (same == merged.end()) {
       merged.push_back(gate);
+      merged.back().scope = "<span class=\"run\">" + gate.scope + "</span>";
       counts.push_back(1);
     } else {
-      same->scope += "; " + gate.scope;
+      same->scope += "; <span class=\"run\">" + gate.scope + "</span>";
       ++counts[static_cast<std::size_t>(same - merged.begin())];
     }
   }
   data rows = list();
   for (std::size_t i = 0; i < merged.size(); ++i) {
-    if (counts[i] > 1) merged[i].scope = fmt::format("{} runs alike<br><small>{}</small>", counts[i], merged[i].scope);
+    if (counts[i] > 1)
+      merged[i].scope = fmt::format("{} runs alike<br><small>{}</small>", counts[i], merged[i].scope);
     rows << row_of(merged[i]);
   }
   return rows;
@@ -208,7 +225,8 @@ data gate_tallies(const std::vector<PlacedGate>& gates) {
   return tallies;
 }
 
-// ---- tables of numbers ------------------------------------------------------------------------------------------
+// ---- tables of numbers
+// ------------------------------------------------------------------------------------------
 
 data text_cells(const std::vector<std::string>& texts) {
   data cells = list();
@@ -241,7 +259,8 @@ std::string table_of(const std::string& metric) {
 
 std::string table_title(const std::string& table) {
   if (table.empty()) return "Other measures";
-  if (table == "equilibrium" || table == "hencky" || table == "zhang") return "Against " + name_of_reference(table);
+  if (table == "equilibrium" || table == "hencky" || table == "zhang")
+    return "Against " + name_of_reference(table);
   if (table == "floor") return "Model-form floor, Zhang − Hencky";
   std::string title = table;
   title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
@@ -254,17 +273,21 @@ std::string column_title(const std::string& metric) {
   std::string rest = dot == std::string::npos ? metric : metric.substr(dot + 1);
   std::string unit;
   for (const vv::Metric& known : vv::metric_catalogue())
-    if (known.name == metric && known.unit != "-" && !known.unit.empty()) unit = " [" + escaped(known.unit) + "]";
+    if (known.name == metric && known.unit != "-" && !known.unit.empty())
+      unit = " [" + escaped(known.unit) + "]";
   if (metric == "oscillation.hp") return "HP";
   if (metric == "oscillation.ns") return "NS";
   std::string suffix;
-  for (const auto& [ending, symbol] : {std::pair{".l1", " <i>L</i><sub>1</sub>"}, {".l2", " <i>L</i><sub>2</sub>"}, {".linf", " <i>L</i><sub>∞</sub>"}})
+  for (const auto& [ending, symbol] : {std::pair{".l1", " <i>L</i><sub>1</sub>"},
+                                       {".l2", " <i>L</i><sub>2</sub>"},
+                                       {".linf", " <i>L</i><sub>∞</sub>"}})
     if (rest.ends_with(ending)) {
       suffix = symbol;
       rest.resize(rest.size() - std::string_view(ending).size());
       break;
     }
-  std::replace_if(rest.begin(), rest.end(), [](char c) { return c == '_' || c == '.'; }, ' ');
+  std::replace_if(
+      rest.begin(), rest.end(), [](char c) { return c == '_' || c == '.'; }, ' ');
   return escaped(rest) + suffix + unit;
 }
 
@@ -322,7 +345,8 @@ data series_tables(const vv::CaseVerdict& verdict) {
   for (const vv::SeriesVerdict& series : verdict.series) {
     data table = object({{"name", series.fixed.empty() ? "All runs" : name_of_run(series.fixed)}});
     std::vector<std::string> sizes;
-    for (const double size : series.cell_size) sizes.push_back(fmt::format("<i>h</i> = {:.4g} mm", size * 1e3));
+    for (const double size : series.cell_size)
+      sizes.push_back(fmt::format("<i>h</i> = {:.4g} mm", size * 1e3));
     table.set("sizes", text_cells(sizes));
     data rows = list();
     for (const std::string& metric : metrics_in_order(verdict)) {
@@ -342,7 +366,8 @@ data series_tables(const vv::CaseVerdict& verdict) {
   return tables;
 }
 
-// ---- a case -----------------------------------------------------------------------------------------------------
+// ---- a case
+// -----------------------------------------------------------------------------------------------------
 
 std::string sweep_sentence(const vv::CaseVerdict& verdict) {
   std::string text;
@@ -353,7 +378,8 @@ std::string sweep_sentence(const vv::CaseVerdict& verdict) {
     text += (text.empty() ? "" : " × ") + values;
   }
   if (verdict.runs.empty()) return text;
-  return fmt::format("{}{}{} run{}", text, text.empty() ? "" : ": ", verdict.runs.size(), verdict.runs.size() == 1 ? "" : "s");
+  return fmt::format("{}{}{} run{}", text, text.empty() ? "" : ": ", verdict.runs.size(),
+                     verdict.runs.size() == 1 ? "" : "s");
 }
 
 void set_exact_solutions(data& section, const vv::Case& definition) {
@@ -378,26 +404,29 @@ data figure_entries(const vv::CaseVerdict& verdict, const std::vector<DrawnFigur
       return figure.case_id == verdict.definition.id && figure.figure_id == request.id;
     });
     if (drawn == figures.end()) continue;
-    entries << object({{"anchor", verdict.definition.id + "-" + request.id},
-                       {"png", base64(drawn->png)},
-                       {"width", std::to_string(drawn->pixel_width / 2)},
-                       {"alt", fmt::format("{} of {}: {}", request.kind, verdict.definition.title, request.caption)},
-                       {"failure", drawn->failure},
-                       {"number", std::to_string(number++)},
-                       {"caption", request.caption}});
+    entries << object(
+        {{"anchor", verdict.definition.id + "-" + request.id},
+         {"png", base64(drawn->png)},
+         {"width", std::to_string(drawn->pixel_width / 2)},
+         {"alt", fmt::format("{} of {}: {}", request.kind, verdict.definition.title, request.caption)},
+         {"failure", drawn->failure},
+         {"number", std::to_string(number++)},
+         {"caption", request.caption}});
   }
   return entries;
 }
 
-data case_section(const vv::CaseVerdict& verdict, const std::vector<DrawnFigure>& figures, int& figure_number) {
+data case_section(const vv::CaseVerdict& verdict, const std::vector<DrawnFigure>& figures,
+                  int& figure_number) {
   const vv::Case& definition = verdict.definition;
-  data section = object({{"id", definition.id},
-                         {"title", definition.title},
-                         {"chip", chip_of(verdict.status)},
-                         {"paper", definition.figure_of_paper},
-                         {"sweep", sweep_sentence(verdict)},
-                         {"description", definition.description},
-                         {"not_run_reason", verdict.status == vv::CaseStatus::not_run ? verdict.not_run_reason : ""}});
+  data section =
+      object({{"id", definition.id},
+              {"title", definition.title},
+              {"chip", chip_of(verdict.status)},
+              {"paper", definition.figure_of_paper},
+              {"sweep", sweep_sentence(verdict)},
+              {"description", definition.description},
+              {"not_run_reason", verdict.status == vv::CaseStatus::not_run ? verdict.not_run_reason : ""}});
   set_exact_solutions(section, definition);
   section.set("figures", figure_entries(verdict, figures, figure_number));
   const std::vector<PlacedGate> gates = gates_of(verdict);
@@ -435,18 +464,21 @@ bool covered_by_control(const vv::CaseVerdict& verdict, const vv::RunVerdict& ru
   });
 }
 
-// ---- across cases -----------------------------------------------------------------------------------------------
+// ---- across cases
+// -----------------------------------------------------------------------------------------------
 
 void set_verdict(data& page, const vv::CampaignVerdict& verdict) {
   const vv::Counts counts = verdict.counts();
   const bool failed = verdict.failed(), passed = verdict.passed();
   page.set("verdict_word", failed ? "FAIL" : passed ? "PASS" : "INCOMPLETE");
   page.set("verdict_class", failed ? "fail" : passed ? "pass" : "open");
-  std::string sentence = fmt::format("{} of {} cases passed; {} of {} gates hold; {} of {} controls are red as expected.",
-                                     counts.cases_passed, counts.cases, counts.gates_passed, counts.gates,
-                                     counts.controls_red, counts.controls);
+  std::string sentence =
+      fmt::format("{} of {} cases passed; {} of {} gates hold; {} of {} controls are red as expected.",
+                  counts.cases_passed, counts.cases, counts.gates_passed, counts.gates, counts.controls_red,
+                  counts.controls);
   if (counts.cases_not_run > 0)
-    sentence += fmt::format(" {} case{} not run.", counts.cases_not_run, counts.cases_not_run == 1 ? " was" : "s were");
+    sentence += fmt::format(" {} case{} not run.", counts.cases_not_run,
+                            counts.cases_not_run == 1 ? " was" : "s were");
   page.set("verdict_sentence", sentence);
   int completed = 0, expected = 0;
   for (const vv::CaseVerdict& c : verdict.cases)
@@ -487,8 +519,10 @@ void set_facts(data& page, const vv::CampaignVerdict& verdict) {
   page.set("wall_seconds", number_markup(verdict.wall_seconds));
   page.set("quick", flag(verdict.quick));
   page.set("extent", verdict.quick ? "quick: only the cases marked as quick" : "all cases");
-  if (verdict.reused > 0) page.set("reused", std::to_string(verdict.reused));
-  else page.set("reused", flag(false));
+  if (verdict.reused > 0)
+    page.set("reused", std::to_string(verdict.reused));
+  else
+    page.set("reused", flag(false));
   std::set<std::string> others;
   int stale = 0, total = 0;
   for (const vv::CaseVerdict& c : verdict.cases)
@@ -519,10 +553,11 @@ void set_failed_gates(data& page, const vv::CampaignVerdict& verdict) {
         failed << row;
       }
       if (!std::isfinite(gate.result->value))
-        not_measured << object({{"text", fmt::format("{}, gate {} ({}): {}", escaped(c.definition.id),
-                                                     escaped(gate.result->id), gate.scope,
-                                                     gate.result->detail.empty() ? "no reason was given"
-                                                                                 : escaped(gate.result->detail))}});
+        not_measured << object(
+            {{"text",
+              fmt::format(
+                  "{}, gate {} ({}): {}", escaped(c.definition.id), escaped(gate.result->id), gate.scope,
+                  gate.result->detail.empty() ? "no reason was given" : escaped(gate.result->detail))}});
     }
   }
   set_list(page, "failed_gates", failed);
@@ -544,14 +579,17 @@ void set_runs_across_cases(data& page, const vv::CampaignVerdict& verdict) {
                                {"crossings", count_markup(record.cell_crossings)}});
       if (!record.completed()) {
         const bool solver_said = record.failure.empty();
-        failures << object({{"case_id", id},
-                            {"name", name},
-                            {"ending", solver_said ? std::string(name_of(record.outcome.ending)) : record.failure},
-                            {"step", solver_said ? count_markup(record.outcome.step) : "–"},
-                            {"time", solver_said ? number_markup(record.outcome.time) : "–"},
-                            {"particle", solver_said && record.outcome.particle >= 0 ? count_markup(record.outcome.particle) : "–"},
-                            {"value", solver_said && record.outcome.particle >= 0 ? number_markup(record.outcome.value) : "–"},
-                            {"expected", covered_by_control(c, run) ? chip("expected", "by a control") : "no"}});
+        failures << object(
+            {{"case_id", id},
+             {"name", name},
+             {"ending", solver_said ? std::string(name_of(record.outcome.ending)) : record.failure},
+             {"step", solver_said ? count_markup(record.outcome.step) : "–"},
+             {"time", solver_said ? number_markup(record.outcome.time) : "–"},
+             {"particle",
+              solver_said && record.outcome.particle >= 0 ? count_markup(record.outcome.particle) : "–"},
+             {"value",
+              solver_said && record.outcome.particle >= 0 ? number_markup(record.outcome.value) : "–"},
+             {"expected", covered_by_control(c, run) ? chip("expected", "by a control") : "no"}});
       }
       hashes << object({{"case_id", id},
                         {"name", name},
@@ -607,7 +645,8 @@ std::string report_html(const vv::CampaignVerdict& verdict, const std::vector<Dr
   data case_list = list(), claims = list(), sections = list(), commands = list();
   int figure_number = 1;
   for (const vv::CaseVerdict& c : verdict.cases) {
-    case_list << object({{"id", c.definition.id}, {"title", c.definition.title}, {"chip", chip_of(c.status)}});
+    case_list << object(
+        {{"id", c.definition.id}, {"title", c.definition.title}, {"chip", chip_of(c.status)}});
     claims << claims_row(c);
     sections << case_section(c, figures, figure_number);
     const std::string file = c.definition.file.filename().string();
@@ -622,7 +661,8 @@ std::string report_html(const vv::CampaignVerdict& verdict, const std::vector<Dr
   kainjow::mustache::mustache document{std::string(document_template())};
   document.set_custom_escape(escaped);
   const std::string html = document.render(page);
-  if (!document.error_message().empty()) throw CanvasError("the report's template is broken: " + document.error_message());
+  if (!document.error_message().empty())
+    throw CanvasError("the report's template is broken: " + document.error_message());
   return html;
 }
 
@@ -632,8 +672,10 @@ void write_report(const vv::CampaignVerdict& verdict, const std::filesystem::pat
   std::string failures;
   for (const DrawnFigure& figure : figures) {
     const std::string name = figure.case_id + "-" + figure.figure_id;
-    if (figure.failure.empty()) vv::write_atomically(directory / "figures" / (name + ".png"), figure.png);
-    else failures += (failures.empty() ? "" : "; ") + name + ": " + figure.failure;
+    if (figure.failure.empty())
+      vv::write_atomically(directory / "figures" / (name + ".png"), figure.png);
+    else
+      failures += (failures.empty() ? "" : "; ") + name + ": " + figure.failure;
   }
   vv::write_atomically(directory / "report.html", report_html(verdict, figures));
   if (!failures.empty()) throw CanvasError("figures could not be drawn: " + failures);

@@ -18,14 +18,15 @@ namespace {
 using Parameters = std::vector<std::pair<std::string, vv::Json>>;
 
 constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
-constexpr double profile_margin = 0.12;     // of the reference's range, on either side
-constexpr double tame_ratio = 30.0;         // an extreme beyond this times the next tamer one is off the axis
+constexpr double profile_margin = 0.12;  // of the reference's range, on either side
+constexpr double tame_ratio = 30.0;      // an extreme beyond this times the next tamer one is off the axis
 constexpr double largest_error_shown = 10.0;  // relative errors above 1000 % say no more than "wrong"
 
 const Color floor_color{0.45, 0.45, 0.45, 1.0};
 const Color gate_color{0.75, 0.0, 0.15, 1.0};
 
-// ---- names ----------------------------------------------------------------------------------------------------
+// ---- names
+// ----------------------------------------------------------------------------------------------------
 
 std::string last_word(const std::string& pointer) {
   std::string word = pointer.substr(pointer.rfind('/') + 1);
@@ -72,11 +73,15 @@ std::optional<double> length_of(const vv::Json& value) {
 /// "ramped load over 1 s", "sudden load", "staged load (5, 3, 1 times full)".
 std::string loading_name(const vv::Json& loading) {
   const std::string type = loading.value("type", "");
-  std::string name = type == "ramp" ? "ramped load" : type == "step" ? "sudden load" : type == "staged" ? "staged load" : type;
+  std::string name = type == "ramp"     ? "ramped load"
+                     : type == "step"   ? "sudden load"
+                     : type == "staged" ? "staged load"
+                                        : type;
   if (loading.contains("duration")) name += " over " + plain_text(loading["duration"]);
   if (loading.contains("fractions") && loading["fractions"].is_array()) {
     std::string fractions;
-    for (const vv::Json& fraction : loading["fractions"]) fractions += (fractions.empty() ? "" : ", ") + plain_text(fraction);
+    for (const vv::Json& fraction : loading["fractions"])
+      fractions += (fractions.empty() ? "" : ", ") + plain_text(fraction);
     name += " (" + fractions + " times full)";
   }
   return escaped(name);
@@ -94,22 +99,26 @@ std::string norm_name(const std::string& norm) {
 std::vector<std::string> split(const std::string& text, char separator) {
   std::vector<std::string> parts{""};
   for (const char c : text) {
-    if (c == separator) parts.emplace_back();
-    else parts.back() += c;
+    if (c == separator)
+      parts.emplace_back();
+    else
+      parts.back() += c;
   }
   return parts;
 }
 
 std::string spaced(std::string text) {
-  std::replace_if(text.begin(), text.end(), [](char c) { return c == '_' || c == '.'; }, ' ');
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c == '_' || c == '.'; }, ' ');
   return text;
 }
 
-/// "<i>L</i><sub>2</sub> error of stress" of "hencky.stress.l2", "error of settlement" of "hencky.settlement"; nothing
-/// of a metric that compares with no reference.
+/// "<i>L</i><sub>2</sub> error of stress" of "hencky.stress.l2", "error of settlement" of
+/// "hencky.settlement"; nothing of a metric that compares with no reference.
 std::string error_name(const std::string& metric) {
   const std::vector<std::string> parts = split(metric, '.');
-  const bool compares = parts[0] == "equilibrium" || parts[0] == "hencky" || parts[0] == "zhang" || parts[0] == "floor";
+  const bool compares =
+      parts[0] == "equilibrium" || parts[0] == "hencky" || parts[0] == "zhang" || parts[0] == "floor";
   if (!compares || parts.size() < 2) return "";
   return (parts.size() > 2 ? norm_name(parts[2]) + " error of " : "error of ") + escaped(spaced(parts[1]));
 }
@@ -123,7 +132,8 @@ std::string short_name_of_reference(const std::string& reference) {
   return reference == "equilibrium" ? reference : escaped(capitalised(reference));
 }
 
-// ---- choosing and grouping runs ---------------------------------------------------------------------------------
+// ---- choosing and grouping runs
+// ---------------------------------------------------------------------------------
 
 const vv::Json* value_of(const Parameters& parameters, const std::string& pointer) {
   for (const auto& [name, value] : parameters)
@@ -134,7 +144,8 @@ const vv::Json* value_of(const Parameters& parameters, const std::string& pointe
 bool selected(const vv::RunVerdict& run, const std::vector<vv::Selector>& where) {
   return std::all_of(where.begin(), where.end(), [&run](const vv::Selector& selector) {
     const vv::Json* value = value_of(run.parameters, selector.parameter);
-    return value && std::find(selector.values.begin(), selector.values.end(), *value) != selector.values.end();
+    return value &&
+           std::find(selector.values.begin(), selector.values.end(), *value) != selector.values.end();
   });
 }
 
@@ -163,10 +174,11 @@ std::vector<std::string> unshown_parameters(const std::vector<const vv::RunVerdi
   if (runs.empty()) return names;
   for (const auto& [pointer, first] : runs.front()->parameters) {
     if (pointer == request.panels || pointer == request.series || pointer == request.over) continue;
-    const bool varies = std::any_of(runs.begin(), runs.end(), [&, p = pointer, f = first](const vv::RunVerdict* run) {
-      const vv::Json* value = value_of(run->parameters, p);
-      return !value || *value != f;
-    });
+    const bool varies =
+        std::any_of(runs.begin(), runs.end(), [&, p = pointer, f = first](const vv::RunVerdict* run) {
+          const vv::Json* value = value_of(run->parameters, p);
+          return !value || *value != f;
+        });
     if (varies) names.push_back(pointer);
   }
   return names;
@@ -205,8 +217,10 @@ std::vector<Member> members_of(const vv::CaseVerdict& verdict, const vv::FigureR
     member.look = look_number(series && unshown.empty() ? *series : vv::Json(), member.series, seen);
     const vv::Json* over = value_of(run->parameters, request.over);
     if (over) member.over = name_of_parameter(request.over, *over);
-    if (member.scene && member.scene->cell_size > 0.0) member.cell_size = member.scene->cell_size;
-    else if (over) member.cell_size = length_of(*over).value_or(nan_value);
+    if (member.scene && member.scene->cell_size > 0.0)
+      member.cell_size = member.scene->cell_size;
+    else if (over)
+      member.cell_size = length_of(*over).value_or(nan_value);
     members.push_back(std::move(member));
   }
   return members;
@@ -260,16 +274,21 @@ std::vector<std::string> notes_on_runs(const std::vector<Member>& members, Missi
     const bool completed = member.run->record.completed();
     if (completed && !missing(member)) continue;
     const std::string verb = completed ? " completed" : " did not complete";
-    const std::string what = completed ? "what is drawn here was not measured" : name_of_ending(member.run->record);
+    const std::string what =
+        completed ? "what is drawn here was not measured" : name_of_ending(member.run->record);
     if (member.over.empty()) {
-      notes.push_back({member.series + verb, what + (completed ? "" : place_of_ending(member.run->record)), ""});
+      notes.push_back(
+          {member.series + verb, what + (completed ? "" : place_of_ending(member.run->record)), ""});
       continue;
     }
     // Over a refinement, steps and times differ from run to run and would fill the page.
-    const auto same = std::find_if(notes.begin(), notes.end(),
-                                   [&](const Note& n) { return n.subject == member.series + verb && n.what == what; });
-    if (same == notes.end()) notes.push_back({member.series + verb, what, member.over});
-    else same->where = joined(same->where, member.over);
+    const auto same = std::find_if(notes.begin(), notes.end(), [&](const Note& n) {
+      return n.subject == member.series + verb && n.what == what;
+    });
+    if (same == notes.end())
+      notes.push_back({member.series + verb, what, member.over});
+    else
+      same->where = joined(same->where, member.over);
   }
   std::vector<std::string> texts;
   for (const Note& note : notes)
@@ -277,7 +296,8 @@ std::vector<std::string> notes_on_runs(const std::vector<Member>& members, Missi
   return texts;
 }
 
-// ---- ranges -----------------------------------------------------------------------------------------------------
+// ---- ranges
+// -----------------------------------------------------------------------------------------------------
 
 /// The smallest range that holds what it is given; empty (lower > upper) at first.
 struct Extent {
@@ -303,11 +323,13 @@ Extent extent_of(const std::vector<double>& values, double factor = 1.0) {
   return extent;
 }
 
-/// Joins the extents of all series but the wild ones: going from the tamest up, it stops at the first whose reach is
-/// more than `tame_ratio` times the one before.
+/// Joins the extents of all series but the wild ones: going from the tamest up, it stops at the first whose
+/// reach is more than `tame_ratio` times the one before.
 Extent tame_extent(std::vector<Extent> extents) {
-  extents.erase(std::remove_if(extents.begin(), extents.end(), [](const Extent& e) { return e.empty(); }), extents.end());
-  std::sort(extents.begin(), extents.end(), [](const Extent& a, const Extent& b) { return a.reach() < b.reach(); });
+  extents.erase(std::remove_if(extents.begin(), extents.end(), [](const Extent& e) { return e.empty(); }),
+                extents.end());
+  std::sort(extents.begin(), extents.end(),
+            [](const Extent& a, const Extent& b) { return a.reach() < b.reach(); });
   Extent joined;
   double previous = 0.0;
   for (const Extent& extent : extents) {
@@ -330,7 +352,8 @@ Range logarithmic_range(const std::vector<double>& values) {
   return {extent.lower / room, extent.upper * room};
 }
 
-// ---- profiles ---------------------------------------------------------------------------------------------------
+// ---- profiles
+// ---------------------------------------------------------------------------------------------------
 
 /// How a quantity is shown: factor from SI, axis label.
 struct Quantity {
@@ -361,8 +384,8 @@ Look reference_look(std::size_t number) {
   return look;
 }
 
-/// The reference curves of a panel, one of each kind: runs of one panel share their exact solution, so the one that
-/// spans most stands for all; one that differs by more than 1 % in its values is another solution.
+/// The reference curves of a panel, one of each kind: runs of one panel share their exact solution, so the
+/// one that spans most stands for all; one that differs by more than 1 % in its values is another solution.
 std::vector<const vv::Curve*> reference_curves(const std::vector<Member>& members, const std::string& name,
                                                const std::string& source) {
   std::vector<const vv::Curve*> kept;
@@ -375,8 +398,10 @@ std::vector<const vv::Curve*> reference_curves(const std::vector<Member>& member
       const double o = extent_of(other->y).reach();
       return std::abs(o - reach) <= 0.01 * std::max(o, reach) + 1e-300;
     });
-    if (same == kept.end()) kept.push_back(curve);
-    else if (span(curve) > span(*same)) *same = curve;
+    if (same == kept.end())
+      kept.push_back(curve);
+    else if (span(curve) > span(*same))
+      *same = curve;
   }
   return kept;
 }
@@ -391,7 +416,8 @@ PlotCurve profile_curve(const vv::Curve& curve, const std::string& label, const 
 PlotCurve sorted_by_height(PlotCurve curve) {
   std::vector<std::size_t> order(curve.y.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::stable_sort(order.begin(), order.end(), [&curve](std::size_t a, std::size_t b) { return curve.y[a] < curve.y[b]; });
+  std::stable_sort(order.begin(), order.end(),
+                   [&curve](std::size_t a, std::size_t b) { return curve.y[a] < curve.y[b]; });
   PlotCurve sorted{curve.label, curve.look, {}, {}, 0};
   for (const std::size_t i : order) {
     sorted.x.push_back(curve.x[i]);
@@ -406,7 +432,8 @@ PlotCurve zero_line(const Range& heights) {
   return {"", look, {0.0, 0.0}, {heights.lower, heights.upper}, 0};
 }
 
-Panel profile_panel(const std::vector<Member>& members, const vv::FigureRequest& request, const std::string& title) {
+Panel profile_panel(const std::vector<Member>& members, const vv::FigureRequest& request,
+                    const std::string& title) {
   const Quantity quantity = quantity_of(request.quantity);
   Panel panel;
   panel.title = title;
@@ -417,8 +444,8 @@ Panel profile_panel(const std::vector<Member>& members, const vv::FigureRequest&
   std::string x_name = "position";
   for (std::size_t i = 0; i < request.references.size(); ++i)
     for (const vv::Curve* curve : reference_curves(members, request.quantity, request.references[i])) {
-      panel.curves.push_back(sorted_by_height(
-          profile_curve(*curve, name_of_reference(request.references[i]), reference_look(i), quantity.factor)));
+      panel.curves.push_back(sorted_by_height(profile_curve(*curve, name_of_reference(request.references[i]),
+                                                            reference_look(i), quantity.factor)));
       for (const double v : panel.curves.back().x) values.include(v);
       for (const double h : panel.curves.back().y) heights.include(h);
     }
@@ -444,13 +471,14 @@ Panel profile_panel(const std::vector<Member>& members, const vv::FigureRequest&
   panel.y.range = {heights.lower, heights.upper + 0.05 * (heights.upper - heights.lower)};
   if (!(panel.y.range.upper > panel.y.range.lower)) panel.y.range.upper = panel.y.range.lower + 1.0;
   panel.y.label = height_label(x_name);
-  if (request.quantity == "stress_error")
-    panel.curves.insert(panel.curves.begin(), zero_line(panel.y.range));
-  panel.notes = notes_on_runs(members, [&](const Member& m) { return !curve_of(*m.run, request.quantity, "run"); });
+  if (request.quantity == "stress_error") panel.curves.insert(panel.curves.begin(), zero_line(panel.y.range));
+  panel.notes =
+      notes_on_runs(members, [&](const Member& m) { return !curve_of(*m.run, request.quantity, "run"); });
   return panel;
 }
 
-// ---- histories --------------------------------------------------------------------------------------------------
+// ---- histories
+// --------------------------------------------------------------------------------------------------
 
 Panel history_panel(const std::vector<Member>& members, const vv::CaseVerdict& verdict,
                     const vv::FigureRequest& request, const std::string& title) {
@@ -482,18 +510,21 @@ Panel history_panel(const std::vector<Member>& members, const vv::CaseVerdict& v
     Look look = look_of_series(member.look);
     look.marker = MarkerShape::none;
     if (look.dash.empty()) look.line_width = 2.4;
-    if (const vv::Curve* curve = curve_of(*member.run, request.quantity, "run")) add(*curve, member.series, look);
+    if (const vv::Curve* curve = curve_of(*member.run, request.quantity, "run"))
+      add(*curve, member.series, look);
   }
   for (std::size_t i = 0; i < request.references.size(); ++i)
     for (const vv::Curve* curve : reference_curves(members, request.quantity, request.references[i]))
       add(*curve, name_of_reference(request.references[i]), reference_look(i));
   panel.x.range = times.upper > times.lower ? Range{times.lower, times.upper} : Range{0.0, 1.0};
   panel.y.range = tame_extent(extents).widened(0.08);
-  panel.notes = notes_on_runs(members, [&](const Member& m) { return !curve_of(*m.run, request.quantity, "run"); });
+  panel.notes =
+      notes_on_runs(members, [&](const Member& m) { return !curve_of(*m.run, request.quantity, "run"); });
   return panel;
 }
 
-// ---- metrics ----------------------------------------------------------------------------------------------------
+// ---- metrics
+// ----------------------------------------------------------------------------------------------------
 
 double metric_of(const vv::RunVerdict& run, const std::string& metric) {
   const auto found = run.metrics.find(metric);
@@ -520,8 +551,8 @@ std::string own_reference(const Scene* scene) {
   return std::holds_alternative<ZhangElastic>(scene->bodies.front().material) ? "zhang" : "hencky";
 }
 
-/// Whether the difference between the two laws bounds this metric from below: stress compared with the other law's
-/// solution. A run compared with its own law's solution has no such floor.
+/// Whether the difference between the two laws bounds this metric from below: stress compared with the other
+/// law's solution. A run compared with its own law's solution has no such floor.
 bool floor_applies(const Member& member, const std::string& metric) {
   const std::string own = own_reference(member.scene);
   if (own.empty() || !metric.ends_with(".stress.l2")) return false;
@@ -568,7 +599,8 @@ std::string order_note(const vv::CaseVerdict& verdict, const vv::FigureRequest& 
 }
 
 Panel convergence_panel(const std::vector<Member>& members, const vv::CaseVerdict& verdict,
-                        const vv::FigureRequest& request, const std::string& metric, const std::string& title) {
+                        const vv::FigureRequest& request, const std::string& metric,
+                        const std::string& title) {
   Panel panel;
   panel.title = title;
   panel.x.label = "cell size <i>h</i> [mm]";
@@ -615,7 +647,8 @@ Panel convergence_panel(const std::vector<Member>& members, const vv::CaseVerdic
   for (const double size : ticks) panel.x.ticks.emplace_back(size * 1e3, millimetres(size));
   panel.y.range = logarithmic_range(values);
   panel.reference_slopes = {1.0, 2.0};
-  for (std::string& note : notes_on_runs(members, [&](const Member& m) { return !std::isfinite(metric_of(*m.run, metric)); }))
+  for (std::string& note :
+       notes_on_runs(members, [&](const Member& m) { return !std::isfinite(metric_of(*m.run, metric)); }))
     panel.notes.push_back(std::move(note));
   return panel;
 }
@@ -643,14 +676,19 @@ std::vector<LevelLine> gate_levels(const vv::Case& definition, const std::vector
     const auto series = distinct(entry.second, [](const Member& m) { return m.series; });
     if (series.empty()) continue;
     std::string subjects;
-    for (const std::string& name : series) subjects += (subjects.empty() ? " for " : ", ") + name;
-    levels.push_back({entry.first, label, "gate threshold" + (series.size() < all ? subjects : ""),
+    for (const std::string& name : distinct(members, [](const Member& m) { return m.series; }))
+      if (std::find(series.begin(), series.end(), name) != series.end())
+        subjects += (subjects.empty() ? " for " : ", ") + name;
+    levels.push_back({entry.first,
+                      label,
+                      "gate threshold" + (series.size() < all ? subjects : ""),
                       {gate_color, 1.0, {4.0, 2.0}}});
   }
   return levels;
 }
 
-Panel bar_panel(const std::vector<Member>& members, const vv::CaseVerdict& verdict, const std::string& metric) {
+Panel bar_panel(const std::vector<Member>& members, const vv::CaseVerdict& verdict,
+                const std::string& metric) {
   Panel panel;
   panel.title = capitalised(name_of_metric(metric));
   panel.y.scale = Scale::logarithmic;
@@ -659,7 +697,8 @@ Panel bar_panel(const std::vector<Member>& members, const vv::CaseVerdict& verdi
   const auto groups = distinct(members, [](const Member& m) { return m.panel; });
   std::vector<double> values;
   for (const std::string& label : series) {
-    const auto member = std::find_if(members.begin(), members.end(), [&](const Member& m) { return m.series == label; });
+    const auto member =
+        std::find_if(members.begin(), members.end(), [&](const Member& m) { return m.series == label; });
     panel.bar_series.push_back({label, look_of_series(member->look)});
   }
   for (const std::string& name : groups) {
@@ -669,7 +708,7 @@ Panel bar_panel(const std::vector<Member>& members, const vv::CaseVerdict& verdi
                                        [&](const Member& m) { return m.series == label && m.panel == name; });
       const double value = member == members.end() ? nan_value : metric_of(*member->run, metric);
       group.values.push_back(value);
-      group.absences.push_back(member == members.end()              ? "not asked for"
+      group.absences.push_back(member == members.end()           ? "not asked for"
                                : member->run->record.completed() ? "not measured"
                                                                  : "did not complete");
       values.push_back(value);
@@ -680,12 +719,14 @@ Panel bar_panel(const std::vector<Member>& members, const vv::CaseVerdict& verdi
   for (const LevelLine& level : panel.levels) values.push_back(level.value);
   panel.y.range = logarithmic_range(values);
   panel.y.range.lower /= 2.0;
-  const bool cut = std::any_of(values.begin(), values.end(), [&panel](double v) { return v > panel.y.range.upper; });
+  const bool cut =
+      std::any_of(values.begin(), values.end(), [&panel](double v) { return v > panel.y.range.upper; });
   if (cut) panel.y.range.upper *= 4.0;
   return panel;
 }
 
-// ---- the stamp --------------------------------------------------------------------------------------------------
+// ---- the stamp
+// --------------------------------------------------------------------------------------------------
 
 std::string stamp_of(const vv::CaseVerdict& verdict, const std::vector<Member>& members) {
   std::set<std::string> revisions;
@@ -696,8 +737,9 @@ std::string stamp_of(const vv::CaseVerdict& verdict, const std::vector<Member>& 
   }
   std::string revision;
   for (const std::string& name : revisions) revision += (revision.empty() ? "" : ", ") + name.substr(0, 20);
-  const std::string input = members.size() == 1 ? "input " + members.front().run->record.input_hash
-                                                : fmt::format("inputs of {} runs {}", members.size(), vv::hash_of(inputs));
+  const std::string input = members.size() == 1
+                                ? "input " + members.front().run->record.input_hash
+                                : fmt::format("inputs of {} runs {}", members.size(), vv::hash_of(inputs));
   return escaped(fmt::format("mpmvv · {} · run at revision {} · {}", verdict.definition.id,
                              revision.empty() ? "unknown" : revision, input));
 }
@@ -708,12 +750,23 @@ std::string escaped(const std::string& text) {
   std::string safe;
   for (const char c : text) {
     switch (c) {
-      case '&': safe += "&amp;"; break;
-      case '<': safe += "&lt;"; break;
-      case '>': safe += "&gt;"; break;
-      case '"': safe += "&quot;"; break;
-      case '\'': safe += "&#39;"; break;
-      default: safe += c;
+      case '&':
+        safe += "&amp;";
+        break;
+      case '<':
+        safe += "&lt;";
+        break;
+      case '>':
+        safe += "&gt;";
+        break;
+      case '"':
+        safe += "&quot;";
+        break;
+      case '\'':
+        safe += "&#39;";
+        break;
+      default:
+        safe += c;
     }
   }
   return safe;
@@ -741,7 +794,8 @@ std::string name_of_parameter(const std::string& pointer, const vv::Json& value)
 
 std::string name_of_run(const Parameters& parameters) {
   std::string name;
-  for (const auto& [pointer, value] : parameters) name += (name.empty() ? "" : ", ") + name_of_parameter(pointer, value);
+  for (const auto& [pointer, value] : parameters)
+    name += (name.empty() ? "" : ", ") + name_of_parameter(pointer, value);
   return name.empty() ? "the run" : name;
 }
 
@@ -765,13 +819,20 @@ std::string name_of_metric(const std::string& metric) {
 std::string name_of_ending(const vv::Record& record) {
   if (!record.failure.empty()) return escaped(record.failure);
   switch (record.outcome.ending) {
-    case Ending::reached_time: return "reached its end time";
-    case Ending::at_rest: return "came to rest";
-    case Ending::not_at_rest: return "not at rest by the deadline";
-    case Ending::not_finite: return "a value is not finite";
-    case Ending::inverted: return "a particle inverted";
-    case Ending::outside_grid: return "a particle left the grid";
-    case Ending::domain_too_large: return "a domain outgrew its cell";
+    case Ending::reached_time:
+      return "reached its end time";
+    case Ending::at_rest:
+      return "came to rest";
+    case Ending::not_at_rest:
+      return "not at rest by the deadline";
+    case Ending::not_finite:
+      return "a value is not finite";
+    case Ending::inverted:
+      return "a particle inverted";
+    case Ending::outside_grid:
+      return "a particle left the grid";
+    case Ending::domain_too_large:
+      return "a domain outgrew its cell";
   }
   return "unknown ending";
 }
@@ -805,7 +866,9 @@ std::string orders_markup(const std::vector<double>& orders) {
     if (!text.empty()) text += ", ";
     // Rounded first, so that no zero has a sign.
     const double rounded = std::round(order * 100.0);
-    text += std::isfinite(order) ? (rounded < 0.0 ? "−" : "") + fmt::format("{:.2f}", std::abs(rounded) / 100.0) : "–";
+    text += std::isfinite(order)
+                ? (rounded < 0.0 ? "−" : "") + fmt::format("{:.2f}", std::abs(rounded) / 100.0)
+                : "–";
   }
   return text.empty() ? "–" : text;
 }
@@ -816,7 +879,8 @@ Plot plot_of(const vv::CaseVerdict& verdict, const vv::FigureRequest& request) {
   Plot plot;
   if (request.kind == "profiles") {
     plot.frame_aspect = 0.95;
-    for (const std::string& name : panels) plot.panels.push_back(profile_panel(in_panel(members, name), request, name));
+    for (const std::string& name : panels)
+      plot.panels.push_back(profile_panel(in_panel(members, name), request, name));
   } else if (request.kind == "history") {
     plot.frame_aspect = 0.68;
     for (const std::string& name : panels)
@@ -829,7 +893,8 @@ Plot plot_of(const vv::CaseVerdict& verdict, const vv::FigureRequest& request) {
   } else if (request.kind == "bars") {
     plot.frame_aspect = 0.75;
     if (!members.empty())
-      for (const std::string& metric : request.metrics) plot.panels.push_back(bar_panel(members, verdict, metric));
+      for (const std::string& metric : request.metrics)
+        plot.panels.push_back(bar_panel(members, verdict, metric));
   } else {
     throw std::invalid_argument("a figure cannot be of kind \"" + request.kind + "\"");
   }

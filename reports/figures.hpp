@@ -26,17 +26,20 @@ std::string name_of_reference(const std::string& reference);
 /// How a run ended, a few words for a person: "a particle left the grid"; of a run that failed, why.
 std::string name_of_ending(const vv::Record& record);
 
-/// A pure number in markup with `digits` significant digits: 0.0123, 1.20×10<sup>−5</sup>; with `digits` zero as short
-/// as six digits allow. A value that is not finite gives "–".
+/// A pure number in markup with `digits` significant digits: 0.0123, 1.20×10<sup>−5</sup>; with `digits` zero
+/// as short as six digits allow. A value that is not finite gives "–".
 std::string number_markup(double value, int digits = 3);
 
-/// Observed orders between neighbouring refinements, in markup: "1.62, −0.04"; one that is not finite gives "–".
+/// Observed orders between neighbouring refinements, in markup: "1.62, −0.04"; one that is not finite gives
+/// "–".
 std::string orders_markup(const std::vector<double>& orders);
 
 /// The picture a request asks for, drawn from the curves and metrics of the verdict and from nothing else.
 ///
-/// - Axes of profiles cover the reference solutions plus 12 % of their range, whatever the runs did; without a
-///   reference, and for histories, they cover every series whose extreme is at most 30 times the next tamer one's.
+/// - Axes of profiles cover the reference solutions plus 12 % of their range, whatever the runs did; without
+/// a
+///   reference, and for histories, they cover every series whose extreme is at most 30 times the next tamer
+///   one's.
 /// - Logarithmic axes of metrics end at 10 (1000 %).
 /// - Runs that did not complete or lack a curve are named in a note under their panel.
 ///

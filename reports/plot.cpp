@@ -28,7 +28,8 @@ const Color ink{0.1, 0.1, 0.1, 1.0};
 const Color muted{0.36, 0.36, 0.36, 1.0};
 const Color grid_color{0.905, 0.905, 0.905, 1.0};
 
-TextStyle text_style(Horizontal horizontal, Vertical vertical, double size = type_size, const Color& color = ink) {
+TextStyle text_style(Horizontal horizontal, Vertical vertical, double size = type_size,
+                     const Color& color = ink) {
   TextStyle style;
   style.size = size;
   style.color = color;
@@ -78,7 +79,8 @@ ReadyAxis ready(const Axis& axis, int wanted) {
     const double largest = std::max(std::abs(axis.range.lower), std::abs(axis.range.upper));
     const double step = ticks.major.size() > 1 ? ticks.major[1] - ticks.major[0] : largest;
     int exponent = 0;
-    if (largest < 0.02 || largest >= 20000.0) exponent = static_cast<int>(std::floor(std::log10(largest) + 1e-9));
+    if (largest < 0.02 || largest >= 20000.0)
+      exponent = static_cast<int>(std::floor(std::log10(largest) + 1e-9));
     const double unit = std::pow(10.0, exponent);
     for (const double t : ticks.major) result.labels.emplace_back(t, tick_label(t / unit, step / unit));
     if (exponent != 0) result.multiplier = "×" + power_of_ten(exponent);
@@ -129,7 +131,8 @@ std::vector<std::string> notes_on_missing_points(const Panel& panel) {
   const auto list = [&counts](auto pick) {
     std::string text;
     for (const auto& [label, count] : counts)
-      if (pick(count) > 0) text += fmt::format("{}{}\u00a0({})", text.empty() ? "" : ", ", label, pick(count));
+      if (pick(count) > 0)
+        text += fmt::format("{}{}\u00a0({})", text.empty() ? "" : ", ", label, pick(count));
     return text;
   };
   const std::string outside = list([](const auto& c) { return c.first; });
@@ -211,7 +214,8 @@ double notes_height(const std::vector<std::string>& notes, double width) {
   return notes.empty() ? 0.0 : height + 4.0;
 }
 
-// ---- the legend -----------------------------------------------------------------------------------------------
+// ---- the legend
+// -----------------------------------------------------------------------------------------------
 
 struct LegendEntry {
   enum class Kind { curve, bar, level } kind = Kind::curve;
@@ -230,10 +234,12 @@ std::vector<LegendEntry> legend_of(const Plot& plot) {
   };
   for (const Panel& panel : plot.panels) {
     for (const PlotCurve& curve : panel.curves) add({LegendEntry::Kind::curve, curve.label, curve.look, {}});
-    for (const BarSeries& series : panel.bar_series) add({LegendEntry::Kind::bar, series.label, series.look, {}});
+    for (const BarSeries& series : panel.bar_series)
+      add({LegendEntry::Kind::bar, series.label, series.look, {}});
   }
   for (const Panel& panel : plot.panels)
-    for (const LevelLine& level : panel.levels) add({LegendEntry::Kind::level, level.legend, {}, level.stroke});
+    for (const LevelLine& level : panel.levels)
+      add({LegendEntry::Kind::level, level.legend, {}, level.stroke});
   return entries;
 }
 
@@ -276,8 +282,8 @@ void fill_bar(Canvas& canvas, const Rectangle& box, const Look& look, const Rect
                         : look.pattern == Pattern::light ? tint(look.color, 0.62)
                                                          : white);
   if (look.pattern == Pattern::hatched) {
-    const Rectangle cut{std::max(box.left, clip.left), std::max(box.top, clip.top), std::min(box.right, clip.right),
-                        std::min(box.bottom, clip.bottom)};
+    const Rectangle cut{std::max(box.left, clip.left), std::max(box.top, clip.top),
+                        std::min(box.right, clip.right), std::min(box.bottom, clip.bottom)};
     canvas.clip(cut);
     for (double x = cut.left - cut.height(); x < cut.right; x += 3.4)
       canvas.line({{x, cut.bottom}, {x + cut.height(), cut.top}}, {look.color, 0.8, {}});
@@ -287,7 +293,8 @@ void fill_bar(Canvas& canvas, const Rectangle& box, const Look& look, const Rect
               {look.color, 0.8, {}});
 }
 
-void draw_sample(Canvas& canvas, const LegendEntry& entry, double left, double middle, const Rectangle& sheet) {
+void draw_sample(Canvas& canvas, const LegendEntry& entry, double left, double middle,
+                 const Rectangle& sheet) {
   const double right = left + sample_width(entry);
   if (entry.kind == LegendEntry::Kind::level) {
     canvas.line({{left, middle}, {right, middle}}, entry.stroke);
@@ -297,7 +304,8 @@ void draw_sample(Canvas& canvas, const LegendEntry& entry, double left, double m
     canvas.line({{box.left, box.bottom}, {box.right, box.bottom}}, {entry.look.color, 0.8, {}});
   } else {
     if (entry.look.line_width > 0.0)
-      canvas.line({{left, middle}, {right, middle}}, {entry.look.color, entry.look.line_width, entry.look.dash});
+      canvas.line({{left, middle}, {right, middle}},
+                  {entry.look.color, entry.look.line_width, entry.look.dash});
     canvas.marker({(left + right) / 2, middle}, marker_of(entry.look));
   }
 }
@@ -323,7 +331,8 @@ Rectangle draw_legend(Canvas& canvas, const std::vector<std::vector<LegendEntry>
   return covered;
 }
 
-// ---- one panel ------------------------------------------------------------------------------------------------
+// ---- one panel
+// ------------------------------------------------------------------------------------------------
 
 void draw_grid(Canvas& canvas, const Placed& placed) {
   const Rectangle& f = placed.frame;
@@ -376,8 +385,10 @@ void draw_y_ticks(Canvas& canvas, const Placed& placed) {
   }
   TextStyle upward = text_style(Horizontal::center, Vertical::bottom);
   upward.upward = true;
-  canvas.text({f.left - tick_gap - widest_label(placed.y) - 3.0, (f.top + f.bottom) / 2}, placed.y.axis.label, upward);
-  canvas.text({f.left - tick_gap, f.top - 6.5}, placed.y.multiplier, text_style(Horizontal::right, Vertical::baseline));
+  canvas.text({f.left - tick_gap - widest_label(placed.y) - 3.0, (f.top + f.bottom) / 2}, placed.y.axis.label,
+              upward);
+  canvas.text({f.left - tick_gap, f.top - 6.5}, placed.y.multiplier,
+              text_style(Horizontal::right, Vertical::baseline));
 }
 
 void draw_frame(Canvas& canvas, const Rectangle& f) {
@@ -400,9 +411,12 @@ Point at_edge(Point p, const Rectangle& f) {
 void draw_edge_mark(Canvas& canvas, Point at, Point truth, const Rectangle& f, const Color& color) {
   const double r = edge_mark / 2;
   Point d{0.0, 0.0};
-  if (truth.y < f.top) d = {0.0, -1.0};
-  else if (truth.y > f.bottom) d = {0.0, 1.0};
-  else d = {truth.x < f.left ? -1.0 : 1.0, 0.0};
+  if (truth.y < f.top)
+    d = {0.0, -1.0};
+  else if (truth.y > f.bottom)
+    d = {0.0, 1.0};
+  else
+    d = {truth.x < f.left ? -1.0 : 1.0, 0.0};
   canvas.polygon({{at.x + r * d.x, at.y + r * d.y},
                   {at.x - r * d.x + r * d.y, at.y - r * d.y + r * d.x},
                   {at.x - r * d.x - r * d.y, at.y - r * d.y - r * d.x}},
@@ -419,7 +433,8 @@ void draw_curve(Canvas& canvas, const Placed& placed, const PlotCurve& curve, La
       path[i] = {std::clamp(path[i].x, -1e7, 1e7), std::clamp(path[i].y, -1e7, 1e7)};
   }
   canvas.clip(placed.frame);
-  if (curve.look.line_width > 0.0) canvas.line(path, {curve.look.color, curve.look.line_width, curve.look.dash});
+  if (curve.look.line_width > 0.0)
+    canvas.line(path, {curve.look.color, curve.look.line_width, curve.look.dash});
   canvas.unclip();
   std::optional<Point> last_mark;
   for (std::size_t i = 0; i < count; ++i) {
@@ -444,13 +459,15 @@ void draw_curve(Canvas& canvas, const Placed& placed, const PlotCurve& curve, La
 }
 
 /// Words where a bar would stand, upright unless they are short; on white, so that no line crosses them.
-void write_in_bar_slot(Canvas& canvas, Point foot, const std::string& words, const Color& color, Layout::Panel& layout) {
+void write_in_bar_slot(Canvas& canvas, Point foot, const std::string& words, const Color& color,
+                       Layout::Panel& layout) {
   TextStyle style = text_style(Horizontal::left, Vertical::middle, type_size, color);
   style.upward = words.size() > 3;
   const TextExtent extent = Canvas::measure(words, style);
   Rectangle covered{foot.x - 5.0, foot.y - extent.width - 2.0, foot.x + 5.0, foot.y + 1.0};
   if (!style.upward) {
-    covered = {foot.x - extent.width / 2 - 1.0, foot.y - type_size, foot.x + extent.width / 2 + 1.0, foot.y + 1.0};
+    covered = {foot.x - extent.width / 2 - 1.0, foot.y - type_size, foot.x + extent.width / 2 + 1.0,
+               foot.y + 1.0};
     style.horizontal = Horizontal::center;
     style.vertical = Vertical::baseline;
   }
@@ -475,7 +492,8 @@ void draw_bars(Canvas& canvas, const Placed& placed, bool words, Layout::Panel& 
   const Panel& panel = *placed.panel;
   const Rectangle& f = placed.frame;
   const double group_width = f.width() / static_cast<double>(panel.groups.size());
-  const double slot = group_width * 0.78 / static_cast<double>(std::max<std::size_t>(1, panel.bar_series.size()));
+  const double slot =
+      group_width * 0.78 / static_cast<double>(std::max<std::size_t>(1, panel.bar_series.size()));
   const double bar_width = std::min(slot * 0.84, 26.0);
   for (std::size_t g = 0; g < panel.groups.size(); ++g) {
     const BarGroup& group = panel.groups[g];
@@ -492,7 +510,8 @@ void draw_bars(Canvas& canvas, const Placed& placed, bool words, Layout::Panel& 
         continue;
       }
       const double height = fraction(panel.y, value);
-      Rectangle bar{x - bar_width / 2, f.bottom - std::min(height, 1.0) * f.height(), x + bar_width / 2, f.bottom};
+      Rectangle bar{x - bar_width / 2, f.bottom - std::min(height, 1.0) * f.height(), x + bar_width / 2,
+                    f.bottom};
       if (height > 1.0) {
         ++layout.outside;
         bar.top = f.top + edge_mark + 4.0;
@@ -524,14 +543,16 @@ void draw_levels(Canvas& canvas, const Placed& placed) {
   }
 }
 
-// ---- reference slopes -----------------------------------------------------------------------------------------
+// ---- reference slopes
+// -----------------------------------------------------------------------------------------
 
 /// What a panel's curves and lines cover, sampled densely.
 std::vector<Point> covered_places(const Placed& placed, const Layout::Panel& layout) {
   std::vector<Point> places = layout.points;
   const auto sample = [&places](Point a, Point b) {
     const int steps = 1 + static_cast<int>(std::min(400.0, std::hypot(b.x - a.x, b.y - a.y) / 2.0));
-    for (int k = 0; k <= steps; ++k) places.push_back({a.x + (b.x - a.x) * k / steps, a.y + (b.y - a.y) * k / steps});
+    for (int k = 0; k <= steps; ++k)
+      places.push_back({a.x + (b.x - a.x) * k / steps, a.y + (b.y - a.y) * k / steps});
   };
   for (const PlotCurve& curve : placed.panel->curves) {
     if (curve.look.line_width <= 0.0) continue;
@@ -547,7 +568,8 @@ std::vector<Point> covered_places(const Placed& placed, const Layout::Panel& lay
   return places;
 }
 
-/// Finds room for a rectangle inside the frame, clear of `covered` and `taken`; nearest to the lower right corner.
+/// Finds room for a rectangle inside the frame, clear of `covered` and `taken`; nearest to the lower right
+/// corner.
 std::optional<Rectangle> empty_place(const Rectangle& frame, double width, double height,
                                      const std::vector<Point>& covered, const std::vector<Rectangle>& taken) {
   constexpr double clearance = 5.0, step = 4.0;
@@ -555,8 +577,9 @@ std::optional<Rectangle> empty_place(const Rectangle& frame, double width, doubl
     for (double right = frame.right - 7.0; right - width > frame.left + 7.0; right -= step) {
       const Rectangle place{right - width, bottom - height, right, bottom};
       const Rectangle grown = place.grown(clearance);
-      const bool free = std::none_of(covered.begin(), covered.end(), [&](Point p) { return grown.contains(p); }) &&
-                        std::none_of(taken.begin(), taken.end(), [&](const Rectangle& r) { return grown.intersects(r); });
+      const bool free =
+          std::none_of(covered.begin(), covered.end(), [&](Point p) { return grown.contains(p); }) &&
+          std::none_of(taken.begin(), taken.end(), [&](const Rectangle& r) { return grown.intersects(r); });
       if (free) return place;
     }
   return std::nullopt;
@@ -570,12 +593,14 @@ void draw_slopes(Canvas& canvas, const Placed& placed, const std::vector<double>
   const double y_decade = f.height() / std::log10(placed.y.axis.range.upper / placed.y.axis.range.lower);
   const double steepest = *std::max_element(orders.begin(), orders.end());
   double label_width = 0.0;
-  for (const double order : orders) label_width = std::max(label_width, text_width(fmt::format("order {:g}", order)));
+  for (const double order : orders)
+    label_width = std::max(label_width, text_width(fmt::format("order {:g}", order)));
   std::optional<Rectangle> place;
   double run = 0.0;
   for (double decades = 0.4; decades > 0.1 && !place; decades -= 0.05) {
     run = decades * x_decade;
-    place = empty_place(f, run + 4.0 + label_width, decades * steepest * y_decade + 8.0, covered, layout.annotations);
+    place = empty_place(f, run + 4.0 + label_width, decades * steepest * y_decade + 8.0, covered,
+                        layout.annotations);
   }
   if (!place) return;
   layout.annotations.push_back(*place);
@@ -597,8 +622,8 @@ void draw_notes(Canvas& canvas, const Placed& placed, double left, double width)
   }
 }
 
-Layout::Panel draw_panel(Canvas& canvas, const Placed& placed, std::size_t number, bool tagged, double notes_left,
-                         double notes_width) {
+Layout::Panel draw_panel(Canvas& canvas, const Placed& placed, std::size_t number, bool tagged,
+                         double notes_left, double notes_width) {
   Layout::Panel layout;
   layout.frame = placed.frame;
   draw_grid(canvas, placed);
@@ -610,7 +635,8 @@ Layout::Panel draw_panel(Canvas& canvas, const Placed& placed, std::size_t numbe
   draw_y_ticks(canvas, placed);
   std::vector<const PlotCurve*> order;
   for (const PlotCurve& curve : placed.panel->curves) order.push_back(&curve);
-  std::stable_sort(order.begin(), order.end(), [](const PlotCurve* a, const PlotCurve* b) { return a->layer < b->layer; });
+  std::stable_sort(order.begin(), order.end(),
+                   [](const PlotCurve* a, const PlotCurve* b) { return a->layer < b->layer; });
   for (const PlotCurve* curve : order) draw_curve(canvas, placed, *curve, layout);
   if (!placed.panel->reference_slopes.empty()) {
     const std::vector<Point> covered = covered_places(placed, layout);
@@ -633,7 +659,8 @@ std::string power_of_ten(int exponent) {
 
 std::string tick_label(double value, double step) {
   int decimals = 0;
-  for (double s = std::abs(step); decimals < 8 && s > 0.0 && std::abs(s - std::round(s)) > 1e-6 * std::max(1.0, s); s *= 10.0)
+  for (double s = std::abs(step);
+       decimals < 8 && s > 0.0 && std::abs(s - std::round(s)) > 1e-6 * std::max(1.0, s); s *= 10.0)
     ++decimals;
   const std::string digits = fmt::format("{:.{}f}", std::abs(value), decimals);
   const bool zero = digits.find_first_not_of("0.") == std::string::npos;
@@ -659,8 +686,10 @@ Ticks linear_ticks(const Range& range, int wanted) {
   const auto first = static_cast<long long>(std::ceil((range.lower - slack) / minor));
   const auto last = static_cast<long long>(std::floor((range.upper + slack) / minor));
   for (long long k = first; k <= last; ++k) {
-    if (k % parts == 0) ticks.major.push_back(static_cast<double>(k / parts) * step);
-    else ticks.minor.push_back(static_cast<double>(k) * minor);
+    if (k % parts == 0)
+      ticks.major.push_back(static_cast<double>(k / parts) * step);
+    else
+      ticks.minor.push_back(static_cast<double>(k) * minor);
   }
   return ticks;
 }
@@ -669,7 +698,8 @@ Ticks logarithmic_ticks(const Range& range, int most) {
   Ticks ticks;
   if (!(range.lower > 0.0 && range.upper > range.lower && std::isfinite(range.upper))) return ticks;
   const double lower = range.lower * (1.0 - 1e-9), upper = range.upper * (1.0 + 1e-9);
-  const int first = static_cast<int>(std::ceil(std::log10(lower))), last = static_cast<int>(std::floor(std::log10(upper)));
+  const int first = static_cast<int>(std::ceil(std::log10(lower))),
+            last = static_cast<int>(std::floor(std::log10(upper)));
   const int decades = last - first + 1;
   const int stride = std::max(1, (decades + most - 1) / most);
   for (int exponent = first - 1; exponent <= last; ++exponent) {
@@ -678,8 +708,10 @@ Ticks logarithmic_ticks(const Range& range, int most) {
       const double value = k * decade;
       if (value < lower || value > upper) continue;
       const bool labelled = k == 1 ? exponent % stride == 0 : decades < 2 && (k == 2 || k == 5);
-      if (labelled) ticks.major.push_back(value);
-      else if (stride == 1 || k == 1) ticks.minor.push_back(value);
+      if (labelled)
+        ticks.major.push_back(value);
+      else if (stride == 1 || k == 1)
+        ticks.minor.push_back(value);
     }
   }
   return ticks;

@@ -22,8 +22,8 @@ struct Ticks {
 
 /// About `wanted` round steps of 1, 2, 2.5 or 5 times a power of ten, all inside the range.
 Ticks linear_ticks(const Range& range, int wanted = 5);
-/// Powers of ten (thinned out to at most `most` labels), minor ticks at their multiples 2 to 9. A range of less than
-/// a decade is labelled at 1, 2 and 5.
+/// Powers of ten (thinned out to at most `most` labels), minor ticks at their multiples 2 to 9. A range of
+/// less than a decade is labelled at 1, 2 and 5.
 Ticks logarithmic_ticks(const Range& range, int most = 7);
 /// A number as a tick shows it: a true minus sign, and as many decimals as `step` needs.
 std::string tick_label(double value, double step);
@@ -38,8 +38,8 @@ struct Axis {
   std::vector<std::pair<double, std::string>> ticks;
 };
 
-/// How a curve or a bar looks. Styles of one picture differ in colour and in shape, dash or hatching, so that a
-/// print in grey tells them apart.
+/// How a curve or a bar looks. Styles of one picture differ in colour and in shape, dash or hatching, so that
+/// a print in grey tells them apart.
 struct Look {
   Color color = black;
   double line_width = 0.0;  ///< [pt]; 0 draws no line
@@ -53,8 +53,8 @@ struct Look {
 /// The n-th look of a colour-blind-safe sequence; repeats after six.
 Look look_of_series(int n);
 
-/// A curve in the units of its axes. A point that is not finite breaks the line; a point outside the axes is marked
-/// at the edge and counted in a note under the panel. Curves of one label share one legend entry.
+/// A curve in the units of its axes. A point that is not finite breaks the line; a point outside the axes is
+/// marked at the edge and counted in a note under the panel. Curves of one label share one legend entry.
 struct PlotCurve {
   std::string label;
   Look look;
@@ -85,28 +85,29 @@ struct Panel {
   std::string title;  ///< markup; follows the tag (a), (b), ...
   Axis x, y;
   std::vector<PlotCurve> curves;
-  std::vector<BarGroup> groups;        ///< a bar panel if not empty: then `x.range` and `x.ticks` are not read
+  std::vector<BarGroup> groups;  ///< a bar panel if not empty: then `x.range` and `x.ticks` are not read
   std::vector<BarSeries> bar_series;
   std::vector<LevelLine> levels;
-  std::vector<double> reference_slopes;  ///< orders to show as a fan of triangles, on two logarithmic axes, if there is room
-  std::vector<std::string> notes;        ///< markup, set under the panel
+  std::vector<double>
+      reference_slopes;  ///< orders to show as a fan of triangles, on two logarithmic axes, if there is room
+  std::vector<std::string> notes;  ///< markup, set under the panel
 };
 
 struct Plot {
   std::vector<Panel> panels;
-  int columns = 1;            ///< >= 1
-  double width = 482.0;       ///< of the whole picture [pt]
+  int columns = 1;             ///< >= 1
+  double width = 482.0;        ///< of the whole picture [pt]
   double frame_aspect = 0.75;  ///< height / width of a panel's frame
-  std::string stamp;          ///< markup, small, along the lower edge
+  std::string stamp;           ///< markup, small, along the lower edge
 };
 
 /// Where things ended up, for whoever checks a picture [pt].
 struct Layout {
   struct Panel {
     Rectangle frame;
-    std::vector<Point> points;  ///< every drawn point and the tops of bars, edge marks included
-    int outside = 0;            ///< points that lie outside the axes, marked at the edge
-    int not_finite = 0;         ///< points that cannot be drawn at all
+    std::vector<Point> points;           ///< every drawn point and the tops of bars, edge marks included
+    int outside = 0;                     ///< points that lie outside the axes, marked at the edge
+    int not_finite = 0;                  ///< points that cannot be drawn at all
     std::vector<Rectangle> annotations;  ///< drawn inside the frame beside the curves
   };
   std::vector<Panel> panels;

@@ -117,7 +117,8 @@ TEST(Canvas, FarAwayPointsKeepTheirDirection) {
 }
 
 TEST(Canvas, OpenMarkersAreWhiteInsideAndDarkAtTheEdge) {
-  for (const MarkerShape shape : {MarkerShape::circle, MarkerShape::square, MarkerShape::triangle, MarkerShape::diamond}) {
+  for (const MarkerShape shape :
+       {MarkerShape::circle, MarkerShape::square, MarkerShape::triangle, MarkerShape::diamond}) {
     Canvas canvas(30.0, 30.0);
     canvas.rectangle({0.0, 0.0, 30.0, 30.0}, {0.5, 0.5, 0.5, 1.0});
     canvas.marker({15.0, 15.0}, {shape, 12.0, white, black, 1.0});

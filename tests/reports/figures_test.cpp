@@ -12,10 +12,13 @@ namespace {
 
 const vv::FigureRequest& request(const vv::CaseVerdict& verdict, const std::string& id) {
   const auto& figures = verdict.definition.figures;
-  return *std::find_if(figures.begin(), figures.end(), [&id](const vv::FigureRequest& f) { return f.id == id; });
+  return *std::find_if(figures.begin(), figures.end(),
+                       [&id](const vv::FigureRequest& f) { return f.id == id; });
 }
 
-Plot plot(const vv::CaseVerdict& verdict, const std::string& id) { return plot_of(verdict, request(verdict, id)); }
+Plot plot(const vv::CaseVerdict& verdict, const std::string& id) {
+  return plot_of(verdict, request(verdict, id));
+}
 
 const PlotCurve* curve(const Panel& panel, const std::string& label) {
   for (const PlotCurve& c : panel.curves)
@@ -36,7 +39,8 @@ TEST(Names, AreThoseAPersonUses) {
   EXPECT_EQ(name_of_parameter("/scene/grid/cell_size", "2.5 mm"), "<i>h</i> = 2.5 mm");
   EXPECT_EQ(name_of_parameter("/scene/update_order", "musl"), "MUSL");
   EXPECT_EQ(name_of_parameter("/scene/some_thing", "a<b"), "some thing a&lt;b");
-  EXPECT_EQ(name_of_parameter("/scene/gravity/loading", {{"type", "ramp"}, {"duration", "1 s"}}), "ramped load over 1 s");
+  EXPECT_EQ(name_of_parameter("/scene/gravity/loading", {{"type", "ramp"}, {"duration", "1 s"}}),
+            "ramped load over 1 s");
   EXPECT_EQ(name_of_run({}), "the run");
   EXPECT_EQ(name_of_metric("hencky.settlement"), "error of settlement against Hencky");
   EXPECT_EQ(name_of_metric("cell_crossings"), "cell crossings");

@@ -65,7 +65,9 @@ TEST(LogarithmicTicks, LessThanADecadeStillHasLabels) {
   EXPECT_DOUBLE_EQ(ticks.major[1], 5.0);
 }
 
-TEST(LogarithmicTicks, NoneWithoutAPositiveRange) { EXPECT_TRUE(logarithmic_ticks({0.0, 1.0}).major.empty()); }
+TEST(LogarithmicTicks, NoneWithoutAPositiveRange) {
+  EXPECT_TRUE(logarithmic_ticks({0.0, 1.0}).major.empty());
+}
 
 TEST(TickLabel, HasATrueMinusAndNoNegativeZero) {
   EXPECT_EQ(tick_label(-2.5, 0.5), "−2.5");
@@ -111,8 +113,10 @@ Panel falling_errors(const std::vector<double>& orders) {
 Panel bars() {
   Panel panel;
   panel.y = {"HP", Scale::logarithmic, {1e-5, 1e-1}, {}};
-  panel.bar_series = {{"MPM", look_of_series(0)}, {"uGIMP", look_of_series(1)}, {"cpGIMP", look_of_series(2)}};
-  panel.groups = {{"1G", {1e-3, 1e-4, 2e-5}, {"", "", ""}}, {"50G", {nan_value, 20.0, 0.0}, {"did not complete", "", ""}}};
+  panel.bar_series = {
+      {"MPM", look_of_series(0)}, {"uGIMP", look_of_series(1)}, {"cpGIMP", look_of_series(2)}};
+  panel.groups = {{"1G", {1e-3, 1e-4, 2e-5}, {"", "", ""}},
+                  {"50G", {nan_value, 20.0, 0.0}, {"did not complete", "", ""}}};
   panel.levels = {{1e-2, "≤ 1 %", "gate threshold", {black, 1.0, {3.0, 2.0}}}};
   return panel;
 }
@@ -158,7 +162,8 @@ TEST(Plot, PanelsDoNotOverlap) {
   for (int p = 0; p < 4; ++p) plot.panels.push_back(waves(2));
   const Layout layout = draw(plot).layout;
   for (std::size_t i = 0; i < 4; ++i)
-    for (std::size_t k = 0; k < i; ++k) EXPECT_FALSE(layout.panels[i].frame.grown(8.0).intersects(layout.panels[k].frame));
+    for (std::size_t k = 0; k < i; ++k)
+      EXPECT_FALSE(layout.panels[i].frame.grown(8.0).intersects(layout.panels[k].frame));
 }
 
 TEST(Plot, ReferenceSlopesAreDrawnWhereThereIsRoom) {
@@ -183,7 +188,8 @@ TEST(Plot, PointsBeyondTheAxesAreCountedAndMarkedAtTheEdge) {
   const Picture picture = draw(plot);
   EXPECT_EQ(picture.layout.panels[0].outside, 0);
   EXPECT_EQ(picture.layout.panels[1].outside, 3);
-  for (const Point& point : picture.layout.panels[1].points) EXPECT_TRUE(picture.layout.panels[1].frame.contains(point));
+  for (const Point& point : picture.layout.panels[1].points)
+    EXPECT_TRUE(picture.layout.panels[1].frame.contains(point));
 }
 
 TEST(Plot, ANoteTellsOfPointsBeyondTheAxes) {

@@ -9,8 +9,8 @@
 
 namespace mpm::support {
 
-/// A verdict shaped like that of a real campaign, for tests of the report. Every number in it is made up from closed
-/// forms; none comes from a simulation.
+/// A verdict shaped like that of a real campaign, for tests of the report. Every number in it is made up from
+/// closed forms; none comes from a simulation.
 namespace demo {
 
 inline constexpr double youngs_modulus = 1e7, unit_weight = 9800.0;
@@ -65,10 +65,14 @@ inline vv::RunVerdict run(const std::string& scheme, int level, int particles) {
     top.y.push_back((height(1.0, q) - 1.0) * ramp * (1.0 + 0.02 * std::exp(-2.0 * t) * std::sin(30.0 * t)));
   }
   run.curves = {stress, exact, displacement, exact_displacement, error, top};
-  run.metrics = {{"hencky.stress.l2", 0.7 * amplitude},  {"zhang.stress.l2", 0.7 * amplitude + 2.7e-4},
-                 {"equilibrium.stress.l2", 0.7 * amplitude}, {"hencky.displacement.linf", 0.1 * amplitude},
-                 {"oscillation.hp", 0.6 * amplitude},    {"oscillation.ns", 0.5 * amplitude},
-                 {"floor.stress.l2", 2.7e-4},            {"cell_crossings", run.record.cell_crossings},
+  run.metrics = {{"hencky.stress.l2", 0.7 * amplitude},
+                 {"zhang.stress.l2", 0.7 * amplitude + 2.7e-4},
+                 {"equilibrium.stress.l2", 0.7 * amplitude},
+                 {"hencky.displacement.linf", 0.1 * amplitude},
+                 {"oscillation.hp", 0.6 * amplitude},
+                 {"oscillation.ns", 0.5 * amplitude},
+                 {"floor.stress.l2", 2.7e-4},
+                 {"cell_crossings", run.record.cell_crossings},
                  {"completed", 1.0}};
   return run;
 }
@@ -155,8 +159,8 @@ inline vv::CaseVerdict demo_levels() {
       run.parameters = {{level_pointer, level}, {scheme_pointer, scheme}};
       const std::string scope = std::to_string(level) + "G, " + scheme;
       const bool control = std::string(scheme) == "mpm" && level == 50;
-      run.gates = {gate(control ? "oscillation_control" : "smooth", "oscillation.hp", run.metrics["oscillation.hp"],
-                        control ? 0.01 : 0.02, control, scope)};
+      run.gates = {gate(control ? "oscillation_control" : "smooth", "oscillation.hp",
+                        run.metrics["oscillation.hp"], control ? 0.01 : 0.02, control, scope)};
       verdict.definition.runs.push_back(request(run, 0.02));
       verdict.runs.push_back(run);
     }
@@ -166,8 +170,8 @@ inline vv::CaseVerdict demo_levels() {
   displacement.references = {"hencky"};
   vv::FigureRequest bars = figure("oscillation", "bars", "");
   bars.metrics = {"oscillation.hp", "oscillation.ns"};
-  verdict.definition.figures = {stress, displacement, figure("stress_error", "profiles", "stress_error"), bars,
-                                figure("settling", "history", "top")};
+  verdict.definition.figures = {stress, displacement, figure("stress_error", "profiles", "stress_error"),
+                                bars, figure("settling", "history", "top")};
   verdict.status = vv::CaseStatus::pass;
   return verdict;
 }
@@ -196,14 +200,16 @@ inline vv::CaseVerdict demo_convergence() {
       vv::RunVerdict run = demo::run(scheme, 50, cells);
       run.parameters = {{scheme_pointer, scheme}, {size_pointer, std::to_string(h).substr(0, 6) + " m"}};
       const std::string name = scheme;
-      const double error = name == "cpgimp" ? 1.5 * std::pow(h, 1.6) : name == "ugimp" ? 2.7e-3 * std::pow(cells / 50.0, 0.4) : 30.0;
+      const double error = name == "cpgimp"  ? 1.5 * std::pow(h, 1.6)
+                           : name == "ugimp" ? 2.7e-3 * std::pow(cells / 50.0, 0.4)
+                                             : 30.0;
       run.metrics["hencky.stress.l2"] = error;
       run.metrics["zhang.stress.l2"] = std::hypot(error, 2.7e-4);
       if (name == "mpm" && cells > 25) record_failure(run);
       series.cell_size.push_back(h);
       const auto found = run.metrics.find("hencky.stress.l2");
-      series.metrics["hencky.stress.l2"].push_back(found == run.metrics.end() ? std::numeric_limits<double>::quiet_NaN()
-                                                                              : found->second);
+      series.metrics["hencky.stress.l2"].push_back(
+          found == run.metrics.end() ? std::numeric_limits<double>::quiet_NaN() : found->second);
       verdict.definition.runs.push_back(request(run, h));
       verdict.runs.push_back(run);
     }
