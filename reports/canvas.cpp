@@ -1,7 +1,6 @@
 #include "reports/canvas.hpp"
 
 #define GL_GLEXT_PROTOTYPES
-#include <GL/glext.h>
 #include <GL/osmesa.h>
 #include <fontconfig/fontconfig.h>
 #include <pango/pangocairo.h>
