@@ -626,6 +626,18 @@ void read_description(const JsonPlace& place, Case& read) {
   read.references = read_names(place["references"], reference_catalogue());
 }
 
+/// A run that a reference solution does not describe would be judged by nonsense.
+void require_suited(const JsonPlace& place, const Case& read) {
+  for (const JsonPlace& name : place.elements()) {
+    for (const RunRequest& run : read.runs) {
+      const std::string missing = why_unsuited(name.text(), run.scene);
+      if (missing.empty()) continue;
+      name.refuse("a reference solution that describes the scene; it needs " + missing,
+                  run.parameters.empty() ? "" : " for the run with " + name_of(run));
+    }
+  }
+}
+
 /// Reads `read.text` into the rest of `read`, top to bottom: each part refers only to those before it.
 void read_parts(Case& read) {
   const JsonPlace place(&read.text, "");
@@ -637,6 +649,7 @@ void read_parts(Case& read) {
   const Json& scene_text = place["scene"].value();
   read.sweep = read_sweep(place["sweep"], scene_text);
   read.runs = expand(scene_text, read.sweep);
+  require_suited(place["references"], read);
   if (const JsonPlace probes = place["probes"]; probes.present()) {
     for (const JsonPlace& probe : probes.elements()) read.probes.push_back(read_probe(probe, read));
   }

@@ -257,8 +257,12 @@ int run(const Arguments& arguments, const WriteReport& write_report) {
 }
 
 int report(const Arguments& arguments, const WriteReport& write_report) {
-  const auto cases = read_all(shipped_files(), [](const fs::path& file) { return file; });
+  auto cases = read_all(shipped_files(), [](const fs::path& file) { return file; });
   if (!cases) return bad_input;
+  // What the paper shows comes first, in the paper's order.
+  std::stable_sort(cases->begin(), cases->end(), [](const Case& a, const Case& b) {
+    return std::pair(a.figure_of_paper.empty(), a.figure_of_paper) < std::pair(b.figure_of_paper.empty(), b.figure_of_paper);
+  });
   const fs::path out = arguments.out.empty() ? project_root() / "reports" / "out" : fs::path(arguments.out);
   return run_and_report(*cases, arguments, out, write_report);
 }

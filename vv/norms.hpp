@@ -22,6 +22,9 @@ const std::vector<Metric>& metric_catalogue();
 /// Reference solutions a case may ask for: equilibrium, hencky, zhang.
 const std::vector<std::string>& reference_catalogue();
 
+/// What a reference solution needs that a scene does not have, for a person; empty if it describes the scene.
+std::string why_unsuited(const std::string& reference, const Scene& scene);
+
 /// What the norms say of a record.
 struct Judgement {
   std::map<std::string, double> metrics;  ///< finite values only

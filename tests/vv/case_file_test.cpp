@@ -58,14 +58,6 @@ Json valid_case() {
           "particles_per_cell": [2],
           "density": "1000 kg/m^3",
           "material": { "law": "linear_elastic", "youngs_modulus": "10000 kPa", "poissons_ratio": 0.3 }
-        },
-        {
-          "name": "upper",
-          "lower": ["0.5 m"],
-          "upper": ["1 m"],
-          "particles_per_cell": [1],
-          "density": "2.43 g/cm^3",
-          "material": { "law": "zhang_elastic", "youngs_modulus": "10 MPa" }
         }
       ],
       "gravity": { "acceleration": ["-9.8 m/s^2"], "level": 10, "loading": { "type": "ramp", "duration": "1 s" } },
@@ -82,7 +74,7 @@ Json valid_case() {
       { "parameter": "/scene/scheme", "values": ["mpm", "cpgimp"] }
     ],
     "references": ["equilibrium", "hencky"],
-    "probes": [{ "id": "top", "quantity": "displacement", "at": ["1 m"], "every": "0.01 s" }],
+    "probes": [{ "id": "top", "quantity": "displacement", "at": ["50 cm"], "every": "0.01 s" }],
     "gates": [
       {
         "id": "equilibrium",
@@ -138,6 +130,24 @@ Json valid_case() {
   })");
 }
 
+/// The same column with a second body on it, which no reference solution describes.
+Json two_bodies() {
+  Json text = valid_case();
+  text["scene"]["bodies"].push_back(Json::parse(R"({
+          "name": "upper",
+          "lower": ["0.5 m"],
+          "upper": ["1 m"],
+          "particles_per_cell": [1],
+          "density": "2.43 g/cm^3",
+          "material": { "law": "zhang_elastic", "youngs_modulus": "10 MPa" }
+        })"));
+  text["references"] = Json::array();
+  text.erase("figures");
+  text["gates"] = Json::parse(
+      R"([{ "id": "completed", "metric": "completed", "at_least": 1, "basis": "requirement", "reason": "Asked for." }])");
+  return text;
+}
+
 Case parsed(const Json& text) { return parse_case(text.dump(2), "column.json"); }
 
 /// The message of the CaseError that reading the text throws, or an empty text.
@@ -182,12 +192,12 @@ TEST(CaseFile, is_read_with_all_it_says) {
   ASSERT_EQ(read.probes.size(), 1u);
   EXPECT_EQ(read.probes[0].id, "top");
   EXPECT_EQ(read.probes[0].quantity, "displacement");
-  EXPECT_EQ(read.probes[0].at[0], 1.0);
+  EXPECT_EQ(read.probes[0].at[0], 0.5);
   EXPECT_EQ(read.probes[0].every, 0.01);
 }
 
 TEST(CaseFile, gives_the_scene_in_si_units) {
-  const Scene scene = parsed(valid_case()).runs.back().scene;
+  const Scene scene = parsed(two_bodies()).runs.back().scene;
   EXPECT_EQ(scene.dimension, 1);
   EXPECT_EQ(scene.scheme, Scheme::cpgimp);
   EXPECT_EQ(scene.update_order, UpdateOrder::usl);
@@ -287,7 +297,7 @@ TEST(CaseFile, expands_a_sweep_with_the_last_axis_fastest) {
 }
 
 TEST(CaseFile, sweeps_over_whole_objects_and_entries_of_arrays) {
-  Json text = valid_case();
+  Json text = two_bodies();
   text["probes"][0]["at"][0] = "0.9 m";
   text["sweep"].push_back(Json::parse(
       R"({ "parameter": "/scene/gravity/loading", "values": [{ "type": "step" }, { "type": "ramp", "duration": "2 s" }] })"));
@@ -349,12 +359,11 @@ TEST(CaseFile, knows_two_dimensions_but_cannot_simulate_them_yet) {
   scene["grid"]["upper"].push_back("1.2 m");
   scene["grid"]["edges"]["y_lower"] = "fixed";
   scene["grid"]["edges"]["y_upper"] = "free";
-  scene["bodies"].erase(1);
   scene["bodies"][0]["lower"].push_back("0 m");
   scene["bodies"][0]["upper"].push_back("1 m");
   scene["bodies"][0]["particles_per_cell"].push_back(2);
   scene["gravity"]["acceleration"].push_back("0 m/s^2");
-  text["probes"][0]["at"].push_back("1 m");
+  text["probes"][0]["at"].push_back("50 cm");
   EXPECT_FALSE(schema_violation(text)) << schema_violation(text)->description;
   expect_message(refusal_of(text.dump()), "column.json", "/scene/dimension",
                  "1, the only number of dimensions that can be simulated", "2");
@@ -387,7 +396,7 @@ const std::vector<Malformed>& malformed_cases() {
        "one of the keys cell_size", "\"a/b~c\"", Schema::refuses},
       {R"([{"op": "add", "path": "/scene/gravity/loading/hold", "value": "1 s"}])",
        "/scene/gravity/loading/hold", "one of the keys type, duration", "\"hold\"", Schema::refuses},
-      {R"([{"op": "add", "path": "/scene/bodies/1/material/poissons_ratio", "value": 0.3}])",
+      {R"([{"op": "add", "path": "/scene/bodies/-", "value": {"name": "upper", "lower": ["0.5 m"], "upper": ["1 m"], "particles_per_cell": [1], "density": "2 g/cm^3", "material": {"law": "zhang_elastic", "youngs_modulus": "10 MPa"}}}, {"op": "add", "path": "/scene/bodies/1/material/poissons_ratio", "value": 0.3}])",
        "/scene/bodies/1/material/poissons_ratio", "one of the keys law, youngs_modulus", "\"poissons_ratio\"",
        Schema::refuses},
       {R"([{"op": "add", "path": "/scene/two\nlines", "value": 1}])", "/scene/two?lines",
@@ -498,11 +507,19 @@ const std::vector<Malformed>& malformed_cases() {
       {R"([{"op": "replace", "path": "/scene/gravity/loading", "value": {"type": "staged", "hold": "1 s", "fractions": []}}])",
        "/scene/gravity/loading/fractions", "an array of at least one value", "an empty array",
        Schema::refuses},
-      {R"([{"op": "replace", "path": "/scene/bodies/1/upper/0", "value": "1.3 m"}])",
+      {R"([{"op": "add", "path": "/scene/bodies/-", "value": {"name": "upper", "lower": ["0.5 m"], "upper": ["1 m"], "particles_per_cell": [1], "density": "2 g/cm^3", "material": {"law": "zhang_elastic", "youngs_modulus": "10 MPa"}}}, {"op": "replace", "path": "/scene/bodies/1/upper/0", "value": "1.3 m"}])",
        "/scene/bodies/1/upper/0", "a body inside the grid, which ends at 1.2 m", "1.3 m",
        Schema::cannot_tell},
-      {R"([{"op": "replace", "path": "/scene/bodies/1/lower/0", "value": "0.4 m"}])", "/scene/bodies/1",
-       "a body clear of all others", "\"upper\", which overlaps \"lower\"", Schema::cannot_tell},
+      {R"([{"op": "add", "path": "/scene/bodies/-", "value": {"name": "upper", "lower": ["0.5 m"], "upper": ["1 m"], "particles_per_cell": [1], "density": "2 g/cm^3", "material": {"law": "zhang_elastic", "youngs_modulus": "10 MPa"}}}, {"op": "replace", "path": "/scene/bodies/1/lower/0", "value": "0.4 m"}])",
+       "/scene/bodies/1", "a body clear of all others", "\"upper\", which overlaps \"lower\"",
+       Schema::cannot_tell},
+      {R"([{"op": "replace", "path": "/scene/grid/edges/x_lower", "value": "free"}])", "/references/0",
+       "a reference solution that describes the scene; it needs a fixed x_lower edge", "\"equilibrium\"",
+       Schema::cannot_tell},
+      {R"([{"op": "replace", "path": "/scene/gravity/acceleration/0", "value": "9.8 m/s^2"}])",
+       "/references/0", "it needs gravity towards the lower edge", "\"equilibrium\"", Schema::cannot_tell},
+      {R"([{"op": "add", "path": "/scene/bodies/-", "value": {"name": "upper", "lower": ["0.5 m"], "upper": ["1 m"], "particles_per_cell": [1], "density": "2 g/cm^3", "material": {"law": "zhang_elastic", "youngs_modulus": "10 MPa"}}}])",
+       "/references/0", "it needs a single body", "\"equilibrium\"", Schema::cannot_tell},
       {R"([{"op": "replace", "path": "/scene/termination/deadline", "value": "1 s"}])",
        "/scene/termination/deadline", "after gravity has settled at 1 s", "1 s", Schema::cannot_tell},
 
