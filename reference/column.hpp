@@ -13,8 +13,8 @@ struct Column {
   double youngs_modulus;  ///< E [Pa], > 0
 };
 
-/// Stress [Pa] at the initial height X [m], whatever the constitutive law, since the mass above a point does not
-/// change: sigma(X) = -q (h0 - X).
+/// Stress [Pa] at the initial height X [m], whatever the constitutive law, since the mass above a point does
+/// not change: sigma(X) = -q (h0 - X).
 double equilibrium_stress(const Column& column, double initial_position);
 
 /// The exact column of one constitutive law.
@@ -59,9 +59,9 @@ class HenckyColumn final : public ColumnSolution {
 class ZhangColumn final : public ColumnSolution {
  public:
   using ColumnSolution::ColumnSolution;
-  double stress(double position) const override;      ///< (33)
+  double stress(double position) const override;            ///< (33)
   double position(double initial_position) const override;  ///< the inverse of x -> x - u(x)
-  double displacement_at(double position) const;      ///< (34, corrected), by current height [m]
+  double displacement_at(double position) const;            ///< (34, corrected), by current height [m]
 
  private:
   double kappa() const;

@@ -19,7 +19,8 @@ class EdgeConditions {
   EdgeConditions(const Scene& scene, const Grid<Dim, Real>& grid) {
     for (int axis = 0; axis < Dim; ++axis) {
       for (int side = 0; side < 2; ++side) {
-        const Condition condition = scene.edges[static_cast<std::size_t>(axis)][static_cast<std::size_t>(side)];
+        const Condition condition =
+            scene.edges[static_cast<std::size_t>(axis)][static_cast<std::size_t>(side)];
         if (condition == Condition::free) continue;
         constrain(grid, axis, side, condition == Condition::fixed);
       }
@@ -47,7 +48,9 @@ class EdgeConditions {
     const std::int32_t across = Dim == 1 ? 1 : grid.nodes(1 - axis);
     for (std::int32_t along = begin; along < begin + depth; ++along) {
       for (std::int32_t k = 0; k < across; ++k) {
-        const std::int32_t node = Dim == 1 ? along : axis == 0 ? along + k * grid.row_stride() : k + along * grid.row_stride();
+        const std::int32_t node = Dim == 1    ? along
+                                  : axis == 0 ? along + k * grid.row_stride()
+                                              : k + along * grid.row_stride();
         for (int component = 0; component < Dim; ++component) {
           if (component != axis && !all_components) continue;
           constraints_.push_back({static_cast<std::uint32_t>(node), static_cast<std::uint32_t>(component)});
@@ -78,8 +81,8 @@ void add_gravity(Grid<Dim, Real>& grid, const Vector<Dim, Real>& gravity) {
 
 /// Nodal acceleration and updated velocity [Kiriyama15, Eq. 4]. Cundall's local damping [Cundall87] takes
 /// `damping` times |unbalanced force| against the motion; `damped` leaves it out at compile time.
-/// The motion is that of the undamped step, not of its start: with the old velocity a node that the step turns
-/// round is pushed on instead of held back, and alternates about zero for ever.
+/// The motion is that of the undamped step, not of its start: with the old velocity a node that the step
+/// turns round is pushed on instead of held back, and alternates about zero for ever.
 template <bool damped, int Dim, class Real>
 void accelerate(Grid<Dim, Real>& grid, Real time_step, Real damping, Real empty_mass) {
   for (std::size_t i = 0; i < grid.sums.size(); ++i) {

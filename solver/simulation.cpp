@@ -18,7 +18,8 @@ double fastest_wave(const Scene& scene) {
                                 : std::visit(wave_modulus, law_of<2, double>(material));
   };
   double speed = 0.0;
-  for (const Body& body : scene.bodies) speed = std::max(speed, std::sqrt(modulus(body.material) / body.density));
+  for (const Body& body : scene.bodies)
+    speed = std::max(speed, std::sqrt(modulus(body.material) / body.density));
   return speed;
 }
 
@@ -41,16 +42,21 @@ std::vector<double> interleave(const std::array<Field<Real>, Components>& fields
 template <class Real>
 std::vector<double> to_doubles(const Field<Real>& field) {
   std::vector<double> all(static_cast<std::size_t>(field.size()));
-  std::transform(field.begin(), field.end(), all.begin(), [](Real value) { return static_cast<double>(value); });
+  std::transform(field.begin(), field.end(), all.begin(),
+                 [](Real value) { return static_cast<double>(value); });
   return all;
 }
 
 Ending ending_of(StencilFault fault) {
   switch (fault) {
-    case StencilFault::not_finite: return Ending::not_finite;
-    case StencilFault::inverted: return Ending::inverted;
-    case StencilFault::domain_too_large: return Ending::domain_too_large;
-    default: return Ending::outside_grid;
+    case StencilFault::not_finite:
+      return Ending::not_finite;
+    case StencilFault::inverted:
+      return Ending::inverted;
+    case StencilFault::domain_too_large:
+      return Ending::domain_too_large;
+    default:
+      return Ending::outside_grid;
   }
 }
 
@@ -58,13 +64,20 @@ Ending ending_of(StencilFault fault) {
 
 const char* name_of(Ending ending) {
   switch (ending) {
-    case Ending::reached_time: return "reached_time";
-    case Ending::at_rest: return "at_rest";
-    case Ending::not_at_rest: return "not_at_rest";
-    case Ending::not_finite: return "not_finite";
-    case Ending::inverted: return "inverted";
-    case Ending::outside_grid: return "outside_grid";
-    case Ending::domain_too_large: return "domain_too_large";
+    case Ending::reached_time:
+      return "reached_time";
+    case Ending::at_rest:
+      return "at_rest";
+    case Ending::not_at_rest:
+      return "not_at_rest";
+    case Ending::not_finite:
+      return "not_finite";
+    case Ending::inverted:
+      return "inverted";
+    case Ending::outside_grid:
+      return "outside_grid";
+    case Ending::domain_too_large:
+      return "domain_too_large";
   }
   return "unknown";
 }
@@ -87,7 +100,10 @@ class Simulation::Engine {
       ++outcome_.step;
       outcome_.time = time_at(outcome_.step);
     }
-    ended_ = ended_ || is_finished();
+    if (!ended_ && is_finished()) {
+      ended_ = true;
+      look_for_fault();  // what the last step did would otherwise be noticed by a next one only
+    }
     return !ended_;
   }
 
@@ -98,6 +114,8 @@ class Simulation::Engine {
  protected:
   /// One step; false after `fail`.
   virtual bool step(double gravity_level) = 0;
+  /// Calls `fail` if a particle is in a state that has no next step. True if so.
+  virtual bool look_for_fault() = 0;
 
   void fail(Ending ending, Eigen::Index particle, double value) {
     outcome_.ending = ending;
@@ -176,10 +194,14 @@ class Simulation::EngineOf final : public Simulation::Engine {
     for (std::size_t a = 0; a < Dim; ++a) {
       gravity[a] = static_cast<Real>(gravity_level * scene().gravity.acceleration[a]);
     }
-    if (stepper_.advance(gravity)) return true;
+    return stepper_.advance(gravity) || !look_for_fault();
+  }
+
+  bool look_for_fault() override {
     const auto fault = stepper_.find_fault();
+    if (fault.kind == StencilFault::none) return false;
     fail(ending_of(fault.kind), fault.particle, fault.value);
-    return false;
+    return true;
   }
 
  private:
@@ -198,9 +220,12 @@ Simulation::Simulation(const Scene& scene) {
   check(scene);
   const auto with_scheme = [&]<class Real>(Real) -> std::unique_ptr<Engine> {
     switch (scene.scheme) {
-      case Scheme::mpm: return std::make_unique<EngineOf<1, Real, Scheme::mpm>>(scene);
-      case Scheme::ugimp: return std::make_unique<EngineOf<1, Real, Scheme::ugimp>>(scene);
-      default: return std::make_unique<EngineOf<1, Real, Scheme::cpgimp>>(scene);
+      case Scheme::mpm:
+        return std::make_unique<EngineOf<1, Real, Scheme::mpm>>(scene);
+      case Scheme::ugimp:
+        return std::make_unique<EngineOf<1, Real, Scheme::ugimp>>(scene);
+      default:
+        return std::make_unique<EngineOf<1, Real, Scheme::cpgimp>>(scene);
     }
   };
   engine_ = scene.precision == Precision::float32 ? with_scheme(0.0F) : with_scheme(0.0);

@@ -6,7 +6,8 @@
 
 namespace mpm {
 
-/// Particles, grid and what moves them: one explicit step of the Material Point Method [Kiriyama15, Eqs. 1 to 14].
+/// Particles, grid and what moves them: one explicit step of the Material Point Method [Kiriyama15, Eqs. 1 to
+/// 14].
 template <int Dim, class Real, Scheme scheme>
 class TimeStepper {
  public:
@@ -19,7 +20,8 @@ class TimeStepper {
         time_step_(static_cast<Real>(time_step)),
         flip_(static_cast<Real>(scene.flip_fraction)),
         damping_(static_cast<Real>(scene.damping)),
-        empty_mass_(empty_node_mass_ratio<Real> * static_cast<Real>(total_mass(particles_) / static_cast<double>(particles_.count()))) {
+        empty_mass_(empty_node_mass_ratio<Real> *
+                    static_cast<Real>(total_mass(particles_) / static_cast<double>(particles_.count()))) {
     for (const Body& body : scene.bodies) laws_.push_back(law_of<Dim, Real>(body.material));
   }
 
@@ -49,7 +51,9 @@ class TimeStepper {
   const Transfer<Dim, Real, scheme>& transfer() const { return transfer_; }
   /// Of the last step [N]; see Transfer::unbalanced_force.
   double unbalanced_force() const { return transfer_.unbalanced_force(particles_, grid_, empty_mass_); }
-  typename Transfer<Dim, Real, scheme>::Fault find_fault() const { return transfer_.find_fault(particles_, grid_); }
+  typename Transfer<Dim, Real, scheme>::Fault find_fault() const {
+    return transfer_.find_fault(particles_, grid_);
+  }
 
  private:
   void move_grid(const Vector<Dim, Real>& gravity) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include "solver/grid.hpp"
@@ -36,7 +37,8 @@ class Transfer {
   /// False if a particle cannot have one; the stencils are then of no use and `find_fault` says why.
   bool weigh(const Points& particles, const Nodes& grid);
 
-  /// The first particle without a stencil, why, and its offending value in SI units.
+  /// The first particle that cannot have a stencil, or whose stress or velocity is not finite; why; and its
+  /// offending value in SI units.
   struct Fault {
     StencilFault kind = StencilFault::none;
     Eigen::Index particle = -1;
@@ -59,9 +61,9 @@ class Transfer {
   /// Strain increments from the grid's velocity [Kiriyama15, Eq. 10a], and half sizes for cpGIMP [Eq. 14].
   void gather_strain(const Nodes& grid, Real time_step, Points& particles) const;
 
-  /// Sum over the particles of |mass * unbalanced acceleration of the grid at the particle| [N]: the part of the
-  /// unbalanced nodal force that the particles can feel. A pattern of nodal forces whose accelerations cancel at
-  /// every particle moves nothing, so it does not keep a model from being at rest.
+  /// Sum over the particles of |mass * unbalanced acceleration of the grid at the particle| [N]: the part of
+  /// the unbalanced nodal force that the particles can feel. A pattern of nodal forces whose accelerations
+  /// cancel at every particle moves nothing, so it does not keep a model from being at rest.
   double unbalanced_force(const Points& particles, const Nodes& grid, Real empty_mass) const;
 
   std::int64_t cell_crossings() const { return cell_crossings_; }
@@ -71,7 +73,8 @@ class Transfer {
 
   /// Calls `visit(node index, weight, gradient)` for each node of a particle.
   template <class Visit>
-  static void for_each_node(const Stencil<Dim, Real, Shape>& stencil, std::int32_t row_stride, Visit&& visit) {
+  static void for_each_node(const Stencil<Dim, Real, Shape>& stencil, std::int32_t row_stride,
+                            Visit&& visit) {
     if constexpr (Dim == 1) {
       for (std::size_t i = 0; i < Shape::width; ++i) {
         visit(static_cast<std::size_t>(stencil.first_node) + i, stencil.weight[0][i],
@@ -79,7 +82,8 @@ class Transfer {
       }
     } else {
       for (std::size_t j = 0; j < Shape::width; ++j) {
-        const std::size_t row = static_cast<std::size_t>(stencil.first_node) + j * static_cast<std::size_t>(row_stride);
+        const std::size_t row =
+            static_cast<std::size_t>(stencil.first_node) + j * static_cast<std::size_t>(row_stride);
         for (std::size_t i = 0; i < Shape::width; ++i) {
           visit(row + i, stencil.weight[0][i] * stencil.weight[1][j],
                 Vector<2, Real>{stencil.gradient[0][i] * stencil.weight[1][j],
@@ -98,16 +102,19 @@ class Transfer {
 };
 
 template <int Dim, class Real, Scheme scheme>
-StencilFault Transfer<Dim, Real, scheme>::fault_of(const Points& particles, const Nodes& grid, Eigen::Index p) {
+StencilFault Transfer<Dim, Real, scheme>::fault_of(const Points& particles, const Nodes& grid,
+                                                   Eigen::Index p) {
   for (std::size_t axis = 0; axis < Dim; ++axis) {
-    const Real x = (particles.position[axis][p] - grid.origin(static_cast<int>(axis))) * grid.cells_per_length();
+    const Real x =
+        (particles.position[axis][p] - grid.origin(static_cast<int>(axis))) * grid.cells_per_length();
     const Real last = static_cast<Real>(grid.nodes(static_cast<int>(axis)) - 1 - Nodes::ghost_layers);
     // Written so that a value that is not a number fails too.
     if (!(x >= Real(Nodes::ghost_layers) && x <= last)) {
       return std::isfinite(x) ? StencilFault::outside_grid : StencilFault::not_finite;
     }
     if constexpr (SchemeTraits<scheme>::has_domain) {
-      if (!(particles.half_size[axis][p] * grid.cells_per_length() <= 1)) return StencilFault::domain_too_large;
+      if (!(particles.half_size[axis][p] * grid.cells_per_length() <= 1))
+        return StencilFault::domain_too_large;
     }
   }
   if (!(particles.volume[p] > 0)) {
@@ -120,10 +127,19 @@ template <int Dim, class Real, Scheme scheme>
 auto Transfer<Dim, Real, scheme>::find_fault(const Points& particles, const Nodes& grid) -> Fault {
   for (Eigen::Index p = 0; p < particles.count(); ++p) {
     const StencilFault kind = fault_of(particles, grid, p);
-    if (kind == StencilFault::none) continue;
+    if (kind == StencilFault::none) {
+      for (const auto& fields : {std::span<const Field<Real>>(particles.stress),
+                                 std::span<const Field<Real>>(particles.velocity)}) {
+        for (const Field<Real>& field : fields) {
+          if (!std::isfinite(field[p])) return {StencilFault::not_finite, p, static_cast<double>(field[p])};
+        }
+      }
+      continue;
+    }
     Real value = particles.volume[p];
     if (kind == StencilFault::domain_too_large) value = particles.half_size[0][p];
-    if (kind == StencilFault::outside_grid || kind == StencilFault::not_finite) value = particles.position[0][p];
+    if (kind == StencilFault::outside_grid || kind == StencilFault::not_finite)
+      value = particles.position[0][p];
     return {kind, p, static_cast<double>(value)};
   }
   return {};
@@ -140,7 +156,8 @@ bool Transfer<Dim, Real, scheme>::weigh(const Points& particles, const Nodes& gr
     for (int axis = Dim - 1; axis >= 0; --axis) {
       const std::size_t a = static_cast<std::size_t>(axis);
       const Real position = (particles.position[a][p] - grid.origin(axis)) * per_length;
-      const Real half_size = SchemeTraits<scheme>::has_domain ? particles.half_size[a][p] * per_length : Real(0);
+      const Real half_size =
+          SchemeTraits<scheme>::has_domain ? particles.half_size[a][p] * per_length : Real(0);
       const std::int32_t first = Shape::first_node(position, half_size);
       Shape::evaluate(position, half_size, first, stencil.weight[a], stencil.gradient[a]);
       for (Real& gradient : stencil.gradient[a]) gradient *= per_length;
@@ -210,7 +227,8 @@ void Transfer<Dim, Real, scheme>::scatter_momentum(const Points& particles, Node
 }
 
 template <int Dim, class Real, Scheme scheme>
-void Transfer<Dim, Real, scheme>::gather_motion(const Nodes& grid, Real time_step, Real flip, Points& particles) const {
+void Transfer<Dim, Real, scheme>::gather_motion(const Nodes& grid, Real time_step, Real flip,
+                                                Points& particles) const {
   for (Eigen::Index p = 0; p < particles.count(); ++p) {
     Vector<Dim, Real> velocity{}, acceleration{};
     for_each_node(stencils_[static_cast<std::size_t>(p)], grid.row_stride(),
@@ -237,7 +255,8 @@ void Transfer<Dim, Real, scheme>::gather_strain(const Nodes& grid, Real time_ste
                   [&](std::size_t i, Real, const Vector<Dim, Real>& gradient) {
                     add_symmetric_product<Dim, Real>(grid.motion[i].velocity, gradient, rate);
                   });
-    for (std::size_t c = 0; c < Points::components; ++c) particles.strain_increment[c][p] = time_step * rate[c];
+    for (std::size_t c = 0; c < Points::components; ++c)
+      particles.strain_increment[c][p] = time_step * rate[c];
     if constexpr (SchemeTraits<scheme>::updates_half_size) {
       for (std::size_t a = 0; a < Dim; ++a) particles.half_size[a][p] *= 1 + particles.strain_increment[a][p];
     }
@@ -245,7 +264,8 @@ void Transfer<Dim, Real, scheme>::gather_strain(const Nodes& grid, Real time_ste
 }
 
 template <int Dim, class Real, Scheme scheme>
-double Transfer<Dim, Real, scheme>::unbalanced_force(const Points& particles, const Nodes& grid, Real empty_mass) const {
+double Transfer<Dim, Real, scheme>::unbalanced_force(const Points& particles, const Nodes& grid,
+                                                     Real empty_mass) const {
   double sum = 0.0;
   for (Eigen::Index p = 0; p < particles.count(); ++p) {
     Vector<Dim, Real> acceleration{};
@@ -253,7 +273,8 @@ double Transfer<Dim, Real, scheme>::unbalanced_force(const Points& particles, co
                   [&](std::size_t i, Real weight, const Vector<Dim, Real>&) {
                     const NodeSums<Dim, Real>& node = grid.sums[i];
                     if (!(node.mass > empty_mass)) return;
-                    for (std::size_t a = 0; a < Dim; ++a) acceleration[a] += weight * (node.force[a] / node.mass);
+                    for (std::size_t a = 0; a < Dim; ++a)
+                      acceleration[a] += weight * (node.force[a] / node.mass);
                   });
     for (Real component : acceleration) sum += static_cast<double>(particles.mass[p] * std::abs(component));
   }

@@ -53,7 +53,8 @@ Values map(const Values& values, Function&& function) {
   return result;
 }
 
-/// Particles within `reach` of a place, or the three nearest if there are fewer. Positions need not be sorted.
+/// Particles within `reach` of a place, or the three nearest if there are fewer. Positions need not be
+/// sorted.
 std::vector<std::size_t> neighbours(const Values& position, double place, double reach) {
   std::vector<std::size_t> order(position.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -68,8 +69,8 @@ std::vector<std::size_t> neighbours(const Values& position, double place, double
 }
 
 /// Value at `place` of the weighted least-squares line through the chosen points.
-double line_through(const Values& x, const Values& y, const Values& weight, const std::vector<std::size_t>& chosen,
-                    double place) {
+double line_through(const Values& x, const Values& y, const Values& weight,
+                    const std::vector<std::size_t>& chosen, double place) {
   double w = 0, wx = 0, wy = 0, wxx = 0, wxy = 0;
   for (std::size_t p : chosen) {
     const double d = x[p] - place;
@@ -92,14 +93,16 @@ Eigen::Map<const Eigen::VectorXd> as_vector(const Values& values) {
 /// Rows of `lengths_in_cells` below the grid's lower edge, for domains that reach over it.
 constexpr int ghost_layers = 2;
 
-/// How the grid sees stress: each particle's length in each cell [cell, particle], in cell sizes. The internal
-/// forces are the differences of neighbouring rows of this matrix times the stress, so it loses exactly what they
-/// lose; for domains it is their overlap with the cells, for points it is all in the cell they are in.
+/// How the grid sees stress: each particle's length in each cell [cell, particle], in cell sizes. The
+/// internal forces are the differences of neighbouring rows of this matrix times the stress, so it loses
+/// exactly what they lose; for domains it is their overlap with the cells, for points it is all in the cell
+/// they are in.
 Eigen::MatrixXd lengths_in_cells(const Scene& scene, const Profile& profile) {
   const auto cells = static_cast<Eigen::Index>(
       std::lround((scene.grid_upper[0] - scene.grid_lower[0]) / scene.cell_size) + 2 * ghost_layers);
   const auto fill = [&]<class Shape>(Shape) {
-    Eigen::MatrixXd lengths = Eigen::MatrixXd::Zero(cells, static_cast<Eigen::Index>(profile.position.size()));
+    Eigen::MatrixXd lengths =
+        Eigen::MatrixXd::Zero(cells, static_cast<Eigen::Index>(profile.position.size()));
     for (std::size_t p = 0; p < profile.position.size(); ++p) {
       const double x = (profile.position[p] - scene.grid_lower[0]) / scene.cell_size + ghost_layers;
       const double half_size = profile.half_size[p] / scene.cell_size;
@@ -163,8 +166,8 @@ double settlement_of(const Profile& profile) {
   return -(profile.displacement[top] + (profile.volume[top] - profile.initial_volume[top]) / 2);
 }
 
-/// Error of the mean stress of every cell that the column fills, against the exact mean. What the grid's equilibrium
-/// constrains is this mean; the share of each particle in it is left to the particles.
+/// Error of the mean stress of every cell that the column fills, against the exact mean. What the grid's
+/// equilibrium constrains is this mean; the share of each particle in it is left to the particles.
 void judge_cell_means(Judging& judging, const std::string& name, const reference::ColumnSolution& exact) {
   const Profile& profile = judging.profile();
   const double h = judging.scene.cell_size;
@@ -176,7 +179,8 @@ void judge_cell_means(Judging& judging, const std::string& name, const reference
   for (std::size_t c = 0; c < filled; ++c) {
     const double lower = static_cast<double>(c) * h;
     found[c] = mean[static_cast<Eigen::Index>(c) + ghost_layers];
-    expected[c] = (exact.stress(lower) + 4 * exact.stress(lower + h / 2) + exact.stress(lower + h)) / 6;  // Simpson
+    expected[c] =
+        (exact.stress(lower) + 4 * exact.stress(lower + h / 2) + exact.stress(lower + h)) / 6;  // Simpson
   }
   judging.set_norms(name + ".cell_stress", relative_norms(found, expected, Values(filled, 1.0)));
 }
@@ -187,10 +191,12 @@ void judge_by_solution(Judging& judging, const std::string& name) {
   const Values stress = map(profile.position, [&](double x) { return exact->stress(x); });
   const Values displacement = map(profile.initial_position, [&](double x) { return exact->displacement(x); });
   judging.set_norms(name + ".stress", relative_norms(profile.stress, stress, profile.volume));
-  judging.set_norms(name + ".displacement", relative_norms(profile.displacement, displacement, profile.initial_volume));
+  judging.set_norms(name + ".displacement",
+                    relative_norms(profile.displacement, displacement, profile.initial_volume));
   judging.set(name + ".settlement", std::abs(settlement_of(profile) / exact->settlement() - 1));
   judging.result.curves.push_back({"stress", name, profile.position, stress, "position"});
-  judging.result.curves.push_back({"displacement", name, profile.initial_position, displacement, "initial_position"});
+  judging.result.curves.push_back(
+      {"displacement", name, profile.initial_position, displacement, "initial_position"});
   judge_cell_means(judging, name, *exact);
 }
 
@@ -214,10 +220,10 @@ void judge_by_equilibrium(Judging& judging) {
                                    map(error, [&](double e) { return e / largest; }), "initial_position"});
 }
 
-/// Share of the stress that the grid cannot see: its part along the directions that the map from particles to cells
-/// shrinks to less than a tenth of the largest. With one particle per cell the map has full rank, only just (a
-/// sawtooth of 50 particles centred on the nodes comes out of it 30 times smaller), so a cut at round-off would let
-/// every sawtooth of a GIMP run pass.
+/// Share of the stress that the grid cannot see: its part along the directions that the map from particles to
+/// cells shrinks to less than a tenth of the largest. With one particle per cell the map has full rank, only
+/// just (a sawtooth of 50 particles centred on the nodes comes out of it 30 times smaller), so a cut at
+/// round-off would let every sawtooth of a GIMP run pass.
 double unseen_share(const Scene& scene, const Profile& profile) {
   constexpr double seen = 0.1;
   const Eigen::MatrixXd s = lengths_in_cells(scene, profile);
@@ -279,31 +285,47 @@ void judge_final_state(Judging& judging) {
 
 std::vector<Metric> make_catalogue() {
   std::vector<Metric> all;
-  const auto add_norms = [&](const std::string& field, const std::string& reference, const std::string& what) {
-    all.push_back({field + ".l1", "-", reference, what + ": L1, volume weighted, relative to the exact field"});
-    all.push_back({field + ".l2", "-", reference, what + ": L2, volume weighted, relative to the exact field"});
-    all.push_back({field + ".linf", "-", reference, what + ": largest error relative to the largest exact value"});
+  const auto add_norms = [&](const std::string& field, const std::string& reference,
+                             const std::string& what) {
+    all.push_back(
+        {field + ".l1", "-", reference, what + ": L1, volume weighted, relative to the exact field"});
+    all.push_back(
+        {field + ".l2", "-", reference, what + ": L2, volume weighted, relative to the exact field"});
+    all.push_back(
+        {field + ".linf", "-", reference, what + ": largest error relative to the largest exact value"});
   };
-  add_norms("equilibrium.stress", "equilibrium", "error of the stress against -q (h0 - X), true for every law");
+  add_norms("equilibrium.stress", "equilibrium",
+            "error of the stress against -q (h0 - X), true for every law");
   for (const std::string name : {"hencky", "zhang"}) {
     const std::string law = name == "hencky" ? "Hencky's column" : "Zhang's column";
     add_norms(name + ".stress", name, "error of the stress at the particles' current places against " + law);
-    add_norms(name + ".cell_stress", name, "error of each filled cell's mean stress, as the grid sees it, against " + law);
+    add_norms(name + ".cell_stress", name,
+              "error of each filled cell's mean stress, as the grid sees it, against " + law);
     add_norms(name + ".displacement", name, "error of the displacement against " + law);
-    all.push_back({name + ".settlement", "-", name, "relative error of the settlement of the top against " + law});
+    all.push_back(
+        {name + ".settlement", "-", name, "relative error of the settlement of the top against " + law});
   }
-  all.push_back({"floor.stress.l2", "-", "hencky", "model-form floor: relative L2 distance of Zhang's stress from Hencky's"});
-  all.push_back({"floor.settlement", "-", "hencky", "model-form floor: Zhang's settlement relative to Hencky's, minus 1"});
-  all.push_back({"oscillation.hp", "-", "equilibrium", "HP: the error less its local linear fit (1.5 cells either side), relative to the exact stress"});
-  all.push_back({"oscillation.ns", "-", "", "NS: share of the stress in modes that the cells see at less than a tenth of the best seen"});
+  all.push_back({"floor.stress.l2", "-", "hencky",
+                 "model-form floor: relative L2 distance of Zhang's stress from Hencky's"});
+  all.push_back({"floor.settlement", "-", "hencky",
+                 "model-form floor: Zhang's settlement relative to Hencky's, minus 1"});
+  all.push_back(
+      {"oscillation.hp", "-", "equilibrium",
+       "HP: the error less its local linear fit (1.5 cells either side), relative to the exact stress"});
+  all.push_back(
+      {"oscillation.ns", "-", "",
+       "NS: share of the stress in modes that the cells see at less than a tenth of the best seen"});
   all.push_back({"settlement", "m", "", "how far the top edge has come down"});
   all.push_back({"largest_compression", "-", "", "1 - the least ratio of current to initial volume"});
   all.push_back({"cell_crossings", "-", "", "particle centres that changed cell, counted every step"});
-  all.push_back({"unbalanced_force_ratio", "-", "", "unbalanced force felt by the particles at the end / total weight"});
-  all.push_back({"kinetic_energy_ratio", "-", "", "kinetic energy of the grid at the end / (total weight * cell size)"});
+  all.push_back({"unbalanced_force_ratio", "-", "",
+                 "unbalanced force felt by the particles at the end / total weight"});
+  all.push_back({"kinetic_energy_ratio", "-", "",
+                 "kinetic energy of the grid at the end / (total weight * cell size)"});
   all.push_back({"mass_change", "-", "", "relative change of the total mass, end against start"});
   all.push_back({"non_finite_values", "-", "", "values in the record that are not finite numbers"});
-  all.push_back({"bits_differ", "-", "", "0 if a repeat on another number of threads ends in the same bits, else 1"});
+  all.push_back(
+      {"bits_differ", "-", "", "0 if a repeat on another number of threads ends in the same bits, else 1"});
   all.push_back({"completed", "-", "", "1 if the run ended where it was meant to, else 0"});
   all.push_back({"steps", "-", "", "time steps done"});
   all.push_back({"particle_steps", "-", "", "time steps times particles: the noise-free cost"});
@@ -330,7 +352,8 @@ std::string why_unsuited(const std::string& /*reference*/, const Scene& scene) {
   if (scene.edges[0][0] == Condition::free) return "a fixed x_lower edge";
   if (scene.edges[0][1] != Condition::free) return "a free x_upper edge";
   if (body.lower[0] != scene.grid_lower[0]) return "a body that stands on the grid's lower edge";
-  if (!(scene.gravity.acceleration[0] < 0) || scene.gravity.level == 0) return "gravity towards the lower edge";
+  if (!(scene.gravity.acceleration[0] < 0) || scene.gravity.level == 0)
+    return "gravity towards the lower edge";
   if (!(final_fraction(scene.gravity) > 0)) return "gravity that still acts in the end";
   return "";
 }

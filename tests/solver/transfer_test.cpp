@@ -118,7 +118,8 @@ TYPED_TEST(EveryTransfer, DoesWorkOnTheGridThatEqualsTheWorkOnTheParticles) {
   for (Eigen::Index p = 0; p < block.particles.count(); ++p) {
     for (std::size_t c = 0; c < block.particles.stress.size(); ++c) {
       const double count = c == 3 ? 2 : 1;  // the shear component stands for two
-      on_particles -= count * block.particles.volume[p] * block.particles.stress[c][p] * block.particles.strain_increment[c][p];
+      on_particles -= count * block.particles.volume[p] * block.particles.stress[c][p] *
+                      block.particles.strain_increment[c][p];
     }
   }
   EXPECT_NEAR(on_grid, on_particles, 1e-11 * std::abs(on_particles));
@@ -136,7 +137,8 @@ TYPED_TEST(EveryTransfer, GathersALinearVelocityFieldExactly) {
   for (Eigen::Index p = 0; p < before.count(); ++p) {
     ASSERT_NEAR(block.particles.strain_increment[0][p], slope * time_step, 1e-14);
     ASSERT_NEAR(block.particles.velocity[0][p], 2.0 + slope * before.position[0][p], 1e-13);
-    ASSERT_NEAR(block.particles.position[0][p] - before.position[0][p], time_step * block.particles.velocity[0][p], 1e-15);
+    ASSERT_NEAR(block.particles.position[0][p] - before.position[0][p],
+                time_step * block.particles.velocity[0][p], 1e-15);
     if constexpr (SchemeTraits<TypeParam::shape>::updates_half_size) {
       ASSERT_NEAR(block.particles.half_size[0][p] / before.half_size[0][p], 1 + slope * time_step, 1e-14);
     } else if constexpr (SchemeTraits<TypeParam::shape>::has_domain) {
@@ -173,9 +175,16 @@ TYPED_TEST(EveryTransfer, NamesTheParticleThatHasNoStencil) {
   EXPECT_EQ(lost.kind, StencilFault::outside_grid);
   EXPECT_EQ(lost.particle, 5);
   EXPECT_DOUBLE_EQ(lost.value, 1.71);
-  EXPECT_EQ(fault_after([&](auto& particles) { particles.position[0][2] = nan; }).kind, StencilFault::not_finite);
+  EXPECT_EQ(fault_after([&](auto& particles) { particles.position[0][2] = nan; }).kind,
+            StencilFault::not_finite);
   EXPECT_EQ(fault_after([](auto& particles) { particles.volume[2] = -1e-9; }).kind, StencilFault::inverted);
   EXPECT_EQ(fault_after([&](auto& particles) { particles.volume[2] = nan; }).kind, StencilFault::not_finite);
+  TypeParam poisoned;  // has a stencil, but its stress would poison the next step
+  poisoned.particles.stress[0][4] = nan;
+  EXPECT_TRUE(poisoned.transfer.weigh(poisoned.particles, poisoned.grid));
+  const auto found = poisoned.transfer.find_fault(poisoned.particles, poisoned.grid);
+  EXPECT_EQ(found.kind, StencilFault::not_finite);
+  EXPECT_EQ(found.particle, 4);
   if constexpr (SchemeTraits<TypeParam::shape>::has_domain) {
     const auto large = fault_after([](auto& particles) { particles.half_size[0][7] = 0.1001; });
     EXPECT_EQ(large.kind, StencilFault::domain_too_large);

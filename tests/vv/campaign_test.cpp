@@ -12,6 +12,7 @@
 #include <system_error>
 #include <thread>
 
+#include "tests/support/column_scene.hpp"
 #include "tests/support/scratch_directory.hpp"
 
 namespace mpm::vv {
@@ -24,17 +25,8 @@ RunRequest request(int cells) {
   made.parameters = {{"/scene/cells", cells}};
   made.scene_text = {{"cells", cells}};
   Scene& scene = made.scene;
-  scene.cell_size = 1.0 / cells;
-  scene.grid_upper = {1.0 + 2.0 / cells, 0.0};
-  scene.edges[0] = {Condition::fixed, Condition::free};
-  Body body;
-  body.name = "column";
-  body.upper = {1.0, 0.0};
-  body.density = 1000.0;
-  body.material = LinearElastic{1e7, 0.0};
-  scene.bodies = {body};
-  scene.gravity.acceleration = {-9.8, 0.0};
-  scene.time_step = StableFraction{0.2};
+  scene = test::column_scene(Scheme::cpgimp, cells);
+  scene.damping = 0.0;
   scene.termination = AtTime{0.02};
   return made;
 }

@@ -12,6 +12,7 @@
 #include <set>
 #include <system_error>
 
+#include "tests/support/column_scene.hpp"
 #include "tests/support/scratch_directory.hpp"
 
 namespace mpm::vv {
@@ -30,19 +31,7 @@ std::vector<std::uint64_t> bits_of(const std::vector<double>& values) {
 RunRequest column(int cells, Scheme scheme = Scheme::cpgimp) {
   RunRequest request;
   Scene& scene = request.scene;
-  scene.scheme = scheme;
-  scene.damping = 0.8;
-  scene.cell_size = 1.0 / cells;
-  scene.grid_lower = {0.0, 0.0};
-  scene.grid_upper = {1.0 + 2.0 / cells, 0.0};
-  scene.edges[0] = {Condition::fixed, Condition::free};
-  Body body;
-  body.name = "column";
-  body.upper = {1.0, 0.0};
-  body.density = 1000.0;
-  body.material = LinearElastic{1e7, 0.0};
-  scene.bodies = {body};
-  scene.gravity.acceleration = {-9.8, 0.0};
+  scene = test::column_scene(scheme, cells);
   scene.gravity.loading = RampLoading{0.01};
   scene.time_step = GivenTimeStep{1e-4};
   scene.termination = AtTime{0.05};
