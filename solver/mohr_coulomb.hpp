@@ -6,18 +6,10 @@
 #include <limits>
 
 #include "solver/linear_elastic.hpp"
+#include "solver/scene.hpp"
 #include "solver/tensor.hpp"
 
 namespace mpm {
-
-/// Isotropic elasticity with the Mohr–Coulomb limit, perfectly plastic.
-struct MohrCoulomb {
-  double youngs_modulus;  ///< [Pa], > 0
-  double poissons_ratio;  ///< [-], in [0, 0.5)
-  double friction_angle;  ///< phi [rad], in [0, pi/2); 0 is Tresca's limit, which has no apex
-  double cohesion;        ///< c [Pa], >= 0
-  double dilation_angle;  ///< psi [rad], in [0, phi]; phi is associated flow, 0 keeps the volume
-};
 
 /// Principal stresses [Pa], tension positive, largest >= middle >= smallest.
 template <class Real>
@@ -163,10 +155,13 @@ SymmetricTensor<2, Real> MohrCoulombLaw<Real>::update(const SymmetricTensor<2, R
 ///     edge s2' = s3'   flow = [2 f - k (s2 - s3)]/(2h - k m)  s3' = [s2 + s3 - (2q - m) flow]/2
 ///
 /// each with s1' = k s3' + t from f = 0. The edges are triaxial compression and triaxial extension; there,
-/// `flow` is the sum of those on both faces. The face's return passes the compression edge when h (s1 - s2) <
-/// f, and the extension edge when h (s2 - s3) < m f; these are also the conditions under which the edge's
-/// second face flows forward. The apex is passed when s3' > c cot phi. Both edges can be passed at once; then
-/// at most one of them is reached short of the apex, because their regions do not overlap.
+/// `flow` is the sum of those on both faces.
+///
+/// The face's return passes the compression edge when h (s1 - s2) < f, and the extension edge when
+/// h (s2 - s3) < m f; these are also the conditions under which the edge's second face flows forward. The
+/// apex is passed when s3' > c cot phi. Who passes both edges has passed the apex on either: the point on the
+/// face has s1' < s2' < s3' then, above the apex, and neither edge's flow turns that far, for any k <= m <= 1
+/// and q >= 0.
 template <class Real>
 PrincipalStresses<Real> MohrCoulombLaw<Real>::returned(const PrincipalStresses<Real>& trial,
                                                        Real excess) const {
@@ -180,17 +175,14 @@ PrincipalStresses<Real> MohrCoulombLaw<Real>::returned(const PrincipalStresses<R
 
   const bool passes_compression_edge = s1 - s2 < face_flow;
   const bool passes_extension_edge = s2 - s3 < flow_ratio_ * face_flow;
-  const bool to_compression_edge =
-      passes_compression_edge & (!passes_extension_edge | (on_compression_edge <= apex_));
-  const bool to_extension_edge = passes_extension_edge & !to_compression_edge;
-
   const Real smallest = std::min(
-      to_compression_edge ? on_compression_edge : (to_extension_edge ? on_extension_edge : on_face), apex_);
+      passes_compression_edge ? on_compression_edge : (passes_extension_edge ? on_extension_edge : on_face),
+      apex_);
   const Real largest = smallest < apex_ ? strength_ratio_ * smallest + tensile_strength_ : apex_;
   // Where the returned stress is small, round-off of the trial stress must not push the middle one out of
   // order.
   const Real middle = std::max(smallest, std::min(largest, s2 - lateral_flow_ * face_flow));
-  return {largest, to_compression_edge ? largest : (to_extension_edge ? smallest : middle), smallest};
+  return {largest, passes_compression_edge ? largest : (passes_extension_edge ? smallest : middle), smallest};
 }
 
 }  // namespace mpm
