@@ -128,8 +128,7 @@ SlipLineField::Point SlipLineField::advanced(const Point& point, double step) co
 
 bool SlipLineField::ends_above_rankine(double log_scale) const {
   Point point = base(log_scale);
-  // psi only falls; not a number, where a step was too long for the violent fields of a far too high
-  // pressure, is low.
+  // psi only falls. Far too high a pressure may end as not a number, which counts as too high.
   for (int i = 0; i < steps_ && point.direction > 0; ++i) point = advanced(point, step_);
   return point.direction > 0;
 }
@@ -190,7 +189,7 @@ SlipLineField::Point SlipLineField::at(double angle) const {
 
 InPlaneStress SlipLineField::stress(double x, double y) const {
   if (y > 0) throw std::invalid_argument("there is no soil above the surface");
-  const double angle = std::atan2(-y, x), radius = std::hypot(x, y);
+  const double angle = std::atan2(std::abs(y), x), radius = std::hypot(x, y);
   double pressure = -y / (1 - sine_), direction = 0;
   if (angle > path_.back().angle) {
     const Point point = at(angle);
@@ -207,7 +206,7 @@ double SlipLineField::wedge_angle() const { return wedge_.angle; }
 
 double SlipLineField::sliding_share() const {
   if (roughness_ == Roughness::smooth) return 1;
-  return std::abs(std::cos(wedge_.angle)) * std::exp(-wedge_.log_inner);
+  return std::exp(-wedge_.log_inner) / std::abs(std::cos(wedge_.angle));
 }
 
 double SlipLineField::reach() const {

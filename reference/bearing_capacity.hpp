@@ -61,10 +61,10 @@ struct StripFooting {
   double unit_weight;  ///< gamma [N/m^3]
 };
 
-/// The mean pressure [Pa] at which the footing fails, by adding up the three terms. With exact factors each
-/// term alone is exact; their sum is conservative, because each has its own worst mechanism: the exact
-/// capacity with surcharge and self-weight together is up to 30 % above it [DavisBooker71]. With one term
-/// only the sum is exact.
+/// The mean pressure [Pa] at which the footing fails, by adding up the three terms. With exact factors and
+/// one term only it is exact. The sum of several is conservative, because each term has its own worst
+/// mechanism and the soil but one: with surcharge and self-weight together it errs on the safe side by up to
+/// 30 % [DavisBooker71].
 double superposed_capacity(const StripFooting& footing, const BearingCapacityFactors& factors);
 
 /// In-plane Cauchy stress, tension positive.
@@ -97,15 +97,15 @@ struct InPlaneStress {
 /// carried by the footing like a part of it, and only the outer `sliding_share` of the base slides. The
 /// capacity follows from the equilibrium of the soil above the ray theta_* from the edge to that point,
 ///   Ngamma = 1/2 [s(theta_*) (1 + sin phi) - sin theta_*] / |cos theta_*|,  theta_* = pi for a smooth base.
-/// That the field can be extended through the rest of the half space and has a matching mechanism, hence is
-/// exact and not only a lower bound, was shown by [Martin05], with whose factors the results agree to all
-/// five or six digits.
+/// A stress field nowhere beyond yield is a lower bound once it is extended through the rest of the half
+/// space; that it can be, and that a mechanism matches it, hence that the factor is exact, is shown in
+/// [Martin05] and not again here. The results agree with the factors published there to every digit.
 class SlipLineField {
  public:
   /// Solves the problem for 1 deg <= friction_angle <= 50 deg [rad] with so many steps of the classical
   /// Runge-Kutta method, steps >= 500; throws std::invalid_argument otherwise. With the default the relative
-  /// error of Ngamma is below 1e-8 from 5 to 45 degrees and below 1e-4 from 1 to 50, falling with the fourth
-  /// power of the step; it takes about 0.1 s.
+  /// error of Ngamma is below 1e-7 from 5 to 45 degrees (1e-9 from 10) and below 1e-4 from 1 to 50, falling
+  /// with the fourth power of the step; it takes about 0.1 s.
   SlipLineField(double friction_angle, Roughness roughness, int steps = 4000);
 
   /// Ngamma, twice the mean pressure over gamma B.
