@@ -780,6 +780,7 @@ std::string name_of_parameter(const std::string& pointer, const vv::Json& value)
     const auto metres = length_of(value);
     return "<i>h</i> = " + (metres ? millimetres(*metres) + " mm" : escaped(text));
   }
+  if (pointer.ends_with("/youngs_modulus")) return "<i>E</i> = " + escaped(text);
   if (pointer == "/scene/update_order" && value.is_string()) {
     std::string upper = text;
     for (char& c : upper)

@@ -6,7 +6,8 @@ namespace mpm {
 
 template <int Dim, class Real>
 Grid<Dim, Real>::Grid(const Scene& scene)
-    : cell_size_(static_cast<Real>(scene.cell_size)), cells_per_length_(static_cast<Real>(1.0 / scene.cell_size)) {
+    : cell_size_(static_cast<Real>(scene.cell_size)),
+      cells_per_length_(static_cast<Real>(1.0 / scene.cell_size)) {
   std::size_t total = 1;
   for (std::size_t axis = 0; axis < Dim; ++axis) {
     origin_[axis] = static_cast<Real>(scene.grid_lower[axis] - ghost_layers * scene.cell_size);

@@ -10,7 +10,8 @@
 
 namespace mpm {
 
-/// What particles add to a node. One node is one aligned vector, so that adding to it is one load and one store.
+/// What particles add to a node. One node is one aligned vector, so that adding to it is one load and one
+/// store.
 template <int Dim, class Real>
 struct alignas((Dim == 1 ? 4 : 8) * sizeof(Real)) NodeSums {
   Real mass{};                   ///< [kg per unit of the absent dimensions]
@@ -25,7 +26,8 @@ struct alignas(2 * Dim * sizeof(Real)) NodeMotion {
   Vector<Dim, Real> acceleration{};  ///< [m/s^2]
 };
 
-/// A regular grid with `ghost_layers` of nodes beyond every edge, which the domains of particles near an edge reach.
+/// A regular grid with `ghost_layers` of nodes beyond every edge, which the domains of particles near an edge
+/// reach.
 template <int Dim, class Real>
 class Grid {
  public:

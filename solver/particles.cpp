@@ -37,6 +37,7 @@ void place(const Body& body, const Lattice& lattice, ParticleRange range, Partic
     for (std::size_t axis = 0; axis < Dim; ++axis) {
       const double cells = static_cast<double>(index[axis]) + 0.5;
       particles.position[axis][p] = static_cast<Real>(body.lower[axis] + cells * lattice.spacing[axis]);
+      particles.velocity[axis][p] = static_cast<Real>(body.velocity[axis]);
     }
     particles.volume[p] = static_cast<Real>(volume);
     particles.mass[p] = static_cast<Real>(body.density * volume);
@@ -61,6 +62,7 @@ Particles<Dim, Real> fill_bodies(const Scene& scene, bool with_domain) {
   resize(particles.half_size, with_domain ? total : 0);
   resize(particles.stress, total);
   resize(particles.strain_increment, total);
+  particles.rotation.setZero(scene.objectivity == Objectivity::jaumann ? total : 0);
   particles.mass.setZero(total);
   particles.volume.setZero(total);
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {

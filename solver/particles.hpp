@@ -21,21 +21,24 @@ template <int Dim, class Real>
 struct Particles {
   static constexpr std::size_t components = symmetric_components<Dim>;
 
-  std::array<Field<Real>, Dim> position;      ///< [m]
-  std::array<Field<Real>, Dim> displacement;  ///< [m], summed apart from the position so that small ones keep their digits
-  std::array<Field<Real>, Dim> velocity;      ///< [m/s]
-  std::array<Field<Real>, Dim> half_size;     ///< [m]; empty for scheme mpm
+  std::array<Field<Real>, Dim> position;  ///< [m]
+  std::array<Field<Real>, Dim>
+      displacement;  ///< [m], summed apart from the position so that small ones keep their digits
+  std::array<Field<Real>, Dim> velocity;                 ///< [m/s]
+  std::array<Field<Real>, Dim> half_size;                ///< [m]; empty for scheme mpm
   std::array<Field<Real>, components> stress;            ///< Cauchy [Pa], tension positive
   std::array<Field<Real>, components> strain_increment;  ///< of the current step [-]
-  Field<Real> mass;             ///< [kg per unit of the absent dimensions]
-  Field<Real> volume;           ///< current [m^Dim]
-  Field<Real> initial_volume;   ///< [m^Dim]
+  Field<Real> rotation;        ///< of the current step, anticlockwise [rad]; empty unless the stress turns
+  Field<Real> mass;            ///< [kg per unit of the absent dimensions]
+  Field<Real> volume;          ///< current [m^Dim]
+  Field<Real> initial_volume;  ///< [m^Dim]
   std::vector<ParticleRange> bodies;
 
   Eigen::Index count() const { return mass.size(); }
 };
 
-/// Mass of all particles, summed in double precision in particle order [kg per unit of the absent dimensions].
+/// Mass of all particles, summed in double precision in particle order [kg per unit of the absent
+/// dimensions].
 template <int Dim, class Real>
 double total_mass(const Particles<Dim, Real>& particles) {
   return std::accumulate(particles.mass.begin(), particles.mass.end(), 0.0);

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <string_view>
 #include <utility>
 
@@ -72,6 +73,9 @@ void check_method(const Scene& scene) {
   require_known(scene.update_order, {UpdateOrder::musl, UpdateOrder::usf, UpdateOrder::usl}, "/update_order",
                 "update order");
   require_known(scene.precision, {Precision::float64, Precision::float32}, "/precision", "precision");
+  require_known(scene.objectivity, {Objectivity::none, Objectivity::jaumann}, "/objectivity", "objectivity");
+  require(scene.dimension == 2 || scene.objectivity == Objectivity::none, "/objectivity",
+          "none in one dimension, where nothing turns", "jaumann");
   require(scene.flip_fraction >= 0.0 && scene.flip_fraction <= 1.0, "/flip_fraction", "a number from 0 to 1",
           text_of(scene.flip_fraction));
   require(scene.damping >= 0.0 && scene.damping < 1.0, "/damping", "a number from 0 to below 1",
@@ -105,6 +109,25 @@ double youngs_modulus_of(const Material& material) {
   return std::visit([](const auto& law) { return law.youngs_modulus; }, material);
 }
 
+void check_poissons_ratio(double ratio, const std::string& place) {
+  require(ratio >= 0.0 && ratio < 0.5, place + "/poissons_ratio", "a number from 0 to below 0.5",
+          text_of(ratio));
+}
+
+void check_strength(const MohrCoulomb& law, const std::string& place) {
+  constexpr double degree = std::numbers::pi / 180;
+  const auto in_degrees = [&](double angle) { return text_of(angle / degree, "deg"); };
+  require(law.friction_angle >= 0.0 && law.friction_angle < 90 * degree, place + "/friction_angle",
+          "an angle from 0 to below 90 deg", in_degrees(law.friction_angle));
+  require(law.dilation_angle >= 0.0 && law.dilation_angle <= law.friction_angle, place + "/dilation_angle",
+          "an angle from 0 to the friction angle, " + in_degrees(law.friction_angle),
+          in_degrees(law.dilation_angle));
+  require(std::isfinite(law.cohesion) && law.cohesion >= 0.0, place + "/cohesion",
+          "a pressure, zero or above", text_of(law.cohesion, "Pa"));
+  require(law.cohesion > 0.0 || law.friction_angle > 0.0, place + "/cohesion",
+          "a pressure above zero where the friction angle is zero", text_of(law.cohesion, "Pa"));
+}
+
 void check_material(const Scene& scene, const Body& body, const std::string& place) {
   const double modulus = youngs_modulus_of(body.material);
   require_positive(modulus, place + "/youngs_modulus", "a modulus", "Pa");
@@ -112,10 +135,12 @@ void check_material(const Scene& scene, const Body& body, const std::string& pla
   require(std::isfinite(wave_speed) && wave_speed > 0.0, place + "/youngs_modulus",
           "a modulus with which the wave speed sqrt(modulus / density) is a number above zero",
           text_of(modulus, "Pa") + " at a density of " + text_of(body.density, "kg/m^3"));
-  std::visit(Overloaded{[&](const LinearElastic& law) {
-                          require(law.poissons_ratio >= 0.0 && law.poissons_ratio < 0.5,
-                                  place + "/poissons_ratio", "a number from 0 to below 0.5",
-                                  text_of(law.poissons_ratio));
+  std::visit(Overloaded{[&](const LinearElastic& law) { check_poissons_ratio(law.poissons_ratio, place); },
+                        [&](const MohrCoulomb& law) {
+                          require(scene.dimension == 2, place + "/law", "a law for one dimension",
+                                  "mohr_coulomb, which has two");
+                          check_poissons_ratio(law.poissons_ratio, place);
+                          check_strength(law, place);
                         },
                         [&](const ZhangElastic&) {
                           require(scene.dimension == 1, place + "/law",
@@ -168,6 +193,9 @@ double check_extent(const Scene& scene, const Body& body, std::size_t axis, cons
 double check_body(const Scene& scene, const Body& body, const std::string& place) {
   require(!body.name.empty(), place + "/name", "a name", "an empty text");
   require_positive(body.density, place + "/density", "a density", "kg/m^3");
+  for (std::size_t axis = 0; axis < axes_of(scene); ++axis) {
+    require_finite(body.velocity[axis], at_index(place + "/velocity", axis), "velocity", "m/s");
+  }
   check_material(scene, body, place + "/material");
   double particles = 1.0;
   for (std::size_t axis = 0; axis < axes_of(scene); ++axis)
@@ -272,12 +300,6 @@ void check_termination(const Scene& scene) {
       scene.termination);
 }
 
-/// The one place that says what the program cannot simulate although it is described correctly.
-void check_simulable(const Scene& scene) {
-  require(scene.dimension == 1, "/dimension", "1, the only number of dimensions that can be simulated",
-          std::to_string(scene.dimension));
-}
-
 std::size_t stage_at(const StagedLoading& staged, double time) {
   std::size_t stage = 0;
   while (stage + 1 < staged.fractions.size() && time >= staged.hold * static_cast<double>(stage + 1)) ++stage;
@@ -313,7 +335,6 @@ void check(const Scene& scene) {
   check_gravity(scene);
   check_time_step(scene);
   check_termination(scene);
-  check_simulable(scene);
 }
 
 }  // namespace mpm

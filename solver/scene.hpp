@@ -22,11 +22,16 @@ enum class UpdateOrder { musl, usf, usl };
 
 enum class Precision { float64, float32 };
 
+/// Whether the stress turns with the material: `none` leaves it as it is [Kiriyama15, Eq. 11], `jaumann`
+/// turns it by the spin of the velocity field. In one dimension nothing turns.
+enum class Objectivity { none, jaumann };
+
 /// Velocity condition on an edge of the grid: none, normal component zero, all components zero.
 /// In one dimension `roller` and `fixed` are the same.
 enum class Condition { free, roller, fixed };
 
-/// Rate-form isotropic linear elasticity [Kiriyama15, Eq. 11]; in 1D it integrates to Hencky's law E ln(lambda).
+/// Rate-form isotropic linear elasticity [Kiriyama15, Eq. 11], plane strain in two dimensions; in 1D it
+/// integrates to Hencky's law E ln(lambda).
 struct LinearElastic {
   double youngs_modulus;  ///< [Pa], > 0
   double poissons_ratio;  ///< [-], in [0, 0.5); in one dimension lateral strain is free and it has no effect
@@ -37,14 +42,24 @@ struct ZhangElastic {
   double youngs_modulus;  ///< [Pa], > 0
 };
 
-using Material = std::variant<LinearElastic, ZhangElastic>;
+/// Isotropic elasticity with the Mohr–Coulomb limit, perfectly plastic; two dimensions (plane strain) only.
+struct MohrCoulomb {
+  double youngs_modulus;  ///< [Pa], > 0
+  double poissons_ratio;  ///< [-], in [0, 0.5)
+  double friction_angle;  ///< phi [rad], in [0, pi/2); 0 is Tresca's limit, which has no apex
+  double cohesion;        ///< c [Pa], >= 0; above zero where phi is zero
+  double dilation_angle;  ///< psi [rad], in [0, phi]; phi is associated flow, 0 keeps the volume
+};
+
+using Material = std::variant<LinearElastic, ZhangElastic, MohrCoulomb>;
 
 /// An axis-aligned block of particles, filled regularly with particles of equal size.
 struct Body {
   std::string name;
-  PerAxis lower{}, upper{};                           ///< corners [m]; whole multiples of the particle spacing
+  PerAxis lower{}, upper{};  ///< corners [m]; whole multiples of the particle spacing
   std::array<int, max_dimension> particles_per_cell{1, 1};  ///< per axis, >= 1
-  double density = 0.0;                               ///< initial mass density [kg/m^3], > 0
+  double density = 0.0;                                     ///< initial mass density [kg/m^3], > 0
+  PerAxis velocity{};                                       ///< initial [m/s]
   Material material = LinearElastic{0.0, 0.0};
 };
 
@@ -77,8 +92,8 @@ struct StableFraction {
 struct AtTime {
   double time;  ///< [s], > 0
 };
-/// At rest, not before gravity has settled: the grid's unbalanced force falls to `unbalanced_force_ratio` times
-/// the total weight, and the grid's kinetic energy to `kinetic_energy_ratio` times weight * cell size.
+/// At rest, not before gravity has settled: the grid's unbalanced force falls to `unbalanced_force_ratio`
+/// times the total weight, and the grid's kinetic energy to `kinetic_energy_ratio` times weight * cell size.
 struct AtRest {
   double unbalanced_force_ratio;  ///< [-], > 0
   double kinetic_energy_ratio;    ///< [-], > 0
@@ -91,10 +106,11 @@ struct Scene {
   Scheme scheme = Scheme::cpgimp;
   UpdateOrder update_order = UpdateOrder::musl;
   Precision precision = Precision::float64;
+  Objectivity objectivity = Objectivity::none;
   double flip_fraction = 1.0;  ///< 1 pure FLIP, 0 pure PIC
   double damping = 0.0;        ///< Cundall's local damping factor alpha [-], in [0, 1)
 
-  double cell_size = 0.0;             ///< h [m], > 0, the same along every axis
+  double cell_size = 0.0;              ///< h [m], > 0, the same along every axis
   PerAxis grid_lower{}, grid_upper{};  ///< corners of the grid [m], a whole number of cells apart
   std::array<std::array<Condition, 2>, max_dimension> edges{};  ///< [axis][0 lower, 1 upper]
 

@@ -218,17 +218,22 @@ class Simulation::EngineOf final : public Simulation::Engine {
 
 Simulation::Simulation(const Scene& scene) {
   check(scene);
-  const auto with_scheme = [&]<class Real>(Real) -> std::unique_ptr<Engine> {
+  const auto make = [&]<int Dim, class Real>(std::integral_constant<int, Dim>,
+                                             Real) -> std::unique_ptr<Engine> {
     switch (scene.scheme) {
       case Scheme::mpm:
-        return std::make_unique<EngineOf<1, Real, Scheme::mpm>>(scene);
+        return std::make_unique<EngineOf<Dim, Real, Scheme::mpm>>(scene);
       case Scheme::ugimp:
-        return std::make_unique<EngineOf<1, Real, Scheme::ugimp>>(scene);
+        return std::make_unique<EngineOf<Dim, Real, Scheme::ugimp>>(scene);
       default:
-        return std::make_unique<EngineOf<1, Real, Scheme::cpgimp>>(scene);
+        return std::make_unique<EngineOf<Dim, Real, Scheme::cpgimp>>(scene);
     }
   };
-  engine_ = scene.precision == Precision::float32 ? with_scheme(0.0F) : with_scheme(0.0);
+  const auto with_dimension = [&](auto dimension) {
+    return scene.precision == Precision::float32 ? make(dimension, 0.0F) : make(dimension, 0.0);
+  };
+  engine_ = scene.dimension == 1 ? with_dimension(std::integral_constant<int, 1>{})
+                                 : with_dimension(std::integral_constant<int, 2>{});
 }
 
 Simulation::~Simulation() = default;

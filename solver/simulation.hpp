@@ -12,13 +12,13 @@ namespace mpm {
 
 /// How a run ended. The last four are numerical failures: `step`, `time`, `particle` and `value` say where.
 enum class Ending {
-  reached_time,         ///< the end time asked for
-  at_rest,              ///< the rest criterion was met
-  not_at_rest,          ///< the deadline came first
-  not_finite,           ///< a particle's position, velocity or stress is not a finite number
-  inverted,             ///< a particle's volume is not positive
-  outside_grid,         ///< a particle's domain left the grid
-  domain_too_large,     ///< a particle's half size exceeds the cell size, beyond what its shape function covers
+  reached_time,      ///< the end time asked for
+  at_rest,           ///< the rest criterion was met
+  not_at_rest,       ///< the deadline came first
+  not_finite,        ///< a particle's position, velocity or stress is not a finite number
+  inverted,          ///< a particle's volume is not positive
+  outside_grid,      ///< a particle's domain left the grid
+  domain_too_large,  ///< a particle's half size exceeds the cell size, beyond what its shape function covers
 };
 
 /// The name used in records, results and messages, for example "at_rest".
@@ -43,10 +43,10 @@ struct ParticleFields {
   std::vector<double> position;          ///< same shape [m]
   std::vector<double> velocity;          ///< same shape [m/s]
   std::vector<double> half_size;         ///< same shape [m]; zeros for scheme mpm
-  std::vector<double> stress;            ///< [particle * stress components + component] Cauchy [Pa], tension positive
-  std::vector<double> volume;            ///< [particle] current [m^dimension]
-  std::vector<double> initial_volume;    ///< [particle]
-  std::vector<double> mass;              ///< [particle] [kg per unit of the absent dimensions]
+  std::vector<double> stress;  ///< [particle * stress components + component] Cauchy [Pa], tension positive
+  std::vector<double> volume;  ///< [particle] current [m^dimension]
+  std::vector<double> initial_volume;  ///< [particle]
+  std::vector<double> mass;            ///< [particle] [kg per unit of the absent dimensions]
 };
 
 /// Quantities of the whole model after the last step.

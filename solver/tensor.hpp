@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cmath>
 
 namespace mpm {
 
@@ -27,7 +28,8 @@ Vector<Dim, Real> contract(const SymmetricTensor<Dim, Real>& stress, const Vecto
   if constexpr (Dim == 1) {
     return {stress[0] * gradient[0]};
   } else {
-    return {stress[0] * gradient[0] + stress[3] * gradient[1], stress[3] * gradient[0] + stress[1] * gradient[1]};
+    return {stress[0] * gradient[0] + stress[3] * gradient[1],
+            stress[3] * gradient[0] + stress[1] * gradient[1]};
   }
 }
 
@@ -40,6 +42,15 @@ void add_symmetric_product(const Vector<Dim, Real>& velocity, const Vector<Dim, 
     rate[1] += velocity[1] * gradient[1];
     rate[3] += (velocity[0] * gradient[1] + velocity[1] * gradient[0]) / 2;
   }
+}
+
+/// A stress turned anticlockwise by an angle [rad] in the plane; zz stays. Exact for any angle.
+template <class Real>
+SymmetricTensor<2, Real> rotated(const SymmetricTensor<2, Real>& stress, Real angle) {
+  const Real c = std::cos(angle), s = std::sin(angle);
+  return {c * c * stress[0] + s * s * stress[1] - 2 * c * s * stress[3],
+          s * s * stress[0] + c * c * stress[1] + 2 * c * s * stress[3], stress[2],
+          c * s * (stress[0] - stress[1]) + (c * c - s * s) * stress[3]};
 }
 
 template <int Dim, class Real>

@@ -74,6 +74,12 @@ class TimeStepper {
 
   void update_stress_from_velocity() {
     transfer_.gather_strain(grid_, time_step_, particles_);
+    if constexpr (Dim == 2) {
+      if (particles_.rotation.size() > 0) {
+        transfer_.gather_rotation(grid_, time_step_, particles_);
+        rotate_stress(particles_);
+      }
+    }
     for (std::size_t b = 0; b < laws_.size(); ++b) {
       std::visit([&](const auto& law) { update_stress(law, particles_.bodies[b], particles_); }, laws_[b]);
     }

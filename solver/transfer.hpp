@@ -60,6 +60,8 @@ class Transfer {
   void gather_motion(const Nodes& grid, Real time_step, Real flip, Points& particles) const;
   /// Strain increments from the grid's velocity [Kiriyama15, Eq. 10a], and half sizes for cpGIMP [Eq. 14].
   void gather_strain(const Nodes& grid, Real time_step, Points& particles) const;
+  /// Rotations from the grid's velocity: half its curl times the time step.
+  void gather_rotation(const Nodes& grid, Real time_step, Points& particles) const requires(Dim == 2);
 
   /// Sum over the particles of |mass * unbalanced acceleration of the grid at the particle| [N]: the part of
   /// the unbalanced nodal force that the particles can feel. A pattern of nodal forces whose accelerations
@@ -279,6 +281,20 @@ double Transfer<Dim, Real, scheme>::unbalanced_force(const Points& particles, co
     for (Real component : acceleration) sum += static_cast<double>(particles.mass[p] * std::abs(component));
   }
   return sum;
+}
+
+template <int Dim, class Real, Scheme scheme>
+void Transfer<Dim, Real, scheme>::gather_rotation(const Nodes& grid, Real time_step, Points& particles) const
+    requires(Dim == 2) {
+  for (Eigen::Index p = 0; p < particles.count(); ++p) {
+    Real curl = 0;
+    for_each_node(stencils_[static_cast<std::size_t>(p)], grid.row_stride(),
+                  [&](std::size_t i, Real, const Vector<Dim, Real>& gradient) {
+                    const Vector<Dim, Real>& velocity = grid.motion[i].velocity;
+                    curl += velocity[1] * gradient[0] - velocity[0] * gradient[1];
+                  });
+    particles.rotation[p] = time_step * curl / 2;
+  }
 }
 
 }  // namespace mpm

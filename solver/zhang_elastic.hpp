@@ -7,8 +7,8 @@
 
 namespace mpm {
 
-/// The one-dimensional law of the published column: stress = 2 E (1 - lambda^(-1/2)) [Zhang], a function of the
-/// stretch lambda alone, so no increment is ever lost.
+/// The one-dimensional law of the published column: stress = 2 E (1 - lambda^(-1/2)) [Zhang], a function of
+/// the stretch lambda alone, so no increment is ever lost.
 template <class Real>
 class ZhangElasticLaw {
  public:
@@ -17,7 +17,8 @@ class ZhangElasticLaw {
 
   /// Cauchy stress [Pa] at a stretch equal to `volume_ratio` [-], > 0.
   SymmetricTensor<1, Real> update(const SymmetricTensor<1, Real>& /*stress*/,
-                                  const SymmetricTensor<1, Real>& /*strain_increment*/, Real volume_ratio) const {
+                                  const SymmetricTensor<1, Real>& /*strain_increment*/,
+                                  Real volume_ratio) const {
     return {twice_modulus_ * (1 - 1 / std::sqrt(volume_ratio))};
   }
 

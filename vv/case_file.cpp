@@ -4,6 +4,7 @@
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <numbers>
 #include <utility>
 
 #include "solver/error.hpp"
@@ -62,16 +63,32 @@ void read_grid(const JsonPlace& place, Scene& scene) {
   read_edges(place["edges"], scene);
 }
 
-enum class Law { linear_elastic, zhang_elastic };
+enum class Law { linear_elastic, zhang_elastic, mohr_coulomb };
+
+/// [rad]
+double read_angle(const JsonPlace& place) {
+  return place.quantity(QuantityKind::angle) * std::numbers::pi / 180;
+}
+
+MohrCoulomb read_mohr_coulomb(const JsonPlace& place) {
+  place.allow_only(
+      {"law", "youngs_modulus", "poissons_ratio", "friction_angle", "cohesion", "dilation_angle"});
+  return {place["youngs_modulus"].quantity(QuantityKind::pressure), place["poissons_ratio"].number(),
+          read_angle(place["friction_angle"]), place["cohesion"].quantity(QuantityKind::pressure),
+          read_angle(place["dilation_angle"])};
+}
 
 Material read_material(const JsonPlace& place) {
-  const Law law = place["law"].choice<Law>(
-      {{"linear_elastic", Law::linear_elastic}, {"zhang_elastic", Law::zhang_elastic}});
+  const Law law = place["law"].choice<Law>({{"linear_elastic", Law::linear_elastic},
+                                            {"zhang_elastic", Law::zhang_elastic},
+                                            {"mohr_coulomb", Law::mohr_coulomb}});
   switch (law) {
     case Law::linear_elastic:
       place.allow_only({"law", "youngs_modulus", "poissons_ratio"});
       return LinearElastic{place["youngs_modulus"].quantity(QuantityKind::pressure),
                            place["poissons_ratio"].number()};
+    case Law::mohr_coulomb:
+      return read_mohr_coulomb(place);
     case Law::zhang_elastic:
       break;
   }
@@ -80,7 +97,7 @@ Material read_material(const JsonPlace& place) {
 }
 
 Body read_body(const JsonPlace& place, std::size_t axes) {
-  place.allow_only({"name", "lower", "upper", "particles_per_cell", "density", "material"});
+  place.allow_only({"name", "lower", "upper", "particles_per_cell", "density", "velocity", "material"});
   Body body;
   body.name = place["name"].identifier();
   body.lower = read_per_axis(place["lower"], axes, QuantityKind::length);
@@ -88,6 +105,9 @@ Body read_body(const JsonPlace& place, std::size_t axes) {
   const std::vector<JsonPlace> per_cell = axis_elements(place["particles_per_cell"], axes);
   for (std::size_t axis = 0; axis < axes; ++axis) body.particles_per_cell[axis] = per_cell[axis].integer();
   body.density = place["density"].quantity(QuantityKind::density);
+  if (const JsonPlace velocity = place["velocity"]; velocity.present()) {
+    body.velocity = read_per_axis(velocity, axes, QuantityKind::velocity);
+  }
   body.material = read_material(place["material"]);
   return body;
 }
@@ -149,8 +169,8 @@ std::variant<AtTime, AtRest> read_termination(const JsonPlace& place) {
 
 /// The scene as written: types, keys and units are right, but the values may be impossible.
 Scene read_scene(const JsonPlace& place) {
-  place.allow_only({"dimension", "scheme", "update_order", "precision", "flip_fraction", "damping", "grid",
-                    "bodies", "gravity", "time_step", "termination"});
+  place.allow_only({"dimension", "scheme", "update_order", "precision", "objectivity", "flip_fraction",
+                    "damping", "grid", "bodies", "gravity", "time_step", "termination"});
   Scene scene;
   scene.dimension = read_dimension(place["dimension"]);
   scene.scheme = place["scheme"].choice<Scheme>(
@@ -162,6 +182,10 @@ Scene read_scene(const JsonPlace& place) {
   if (const JsonPlace precision = place["precision"]; precision.present()) {
     scene.precision =
         precision.choice<Precision>({{"double", Precision::float64}, {"float", Precision::float32}});
+  }
+  if (const JsonPlace objectivity = place["objectivity"]; objectivity.present()) {
+    scene.objectivity =
+        objectivity.choice<Objectivity>({{"none", Objectivity::none}, {"jaumann", Objectivity::jaumann}});
   }
   if (const JsonPlace flip = place["flip_fraction"]; flip.present()) scene.flip_fraction = flip.number();
   if (const JsonPlace damping = place["damping"]; damping.present()) scene.damping = damping.number();

@@ -86,6 +86,15 @@ double line_through(const Values& x, const Values& y, const Values& weight,
   return (wxx * wy - wx * wxy) / determinant;
 }
 
+/// The axis a column stands along: the last one.
+std::size_t axis_of(const Scene& scene) { return static_cast<std::size_t>(scene.dimension) - 1; }
+
+/// Width of a column across its axis [m]; 1, without unit, in one dimension.
+double width_of(const Scene& scene) {
+  const Body& body = scene.bodies.front();
+  return scene.dimension == 1 ? 1.0 : body.upper[0] - body.lower[0];
+}
+
 Eigen::Map<const Eigen::VectorXd> as_vector(const Values& values) {
   return {values.data(), static_cast<Eigen::Index>(values.size())};
 }
@@ -93,25 +102,27 @@ Eigen::Map<const Eigen::VectorXd> as_vector(const Values& values) {
 /// Rows of `lengths_in_cells` below the grid's lower edge, for domains that reach over it.
 constexpr int ghost_layers = 2;
 
-/// How the grid sees stress: each particle's length in each cell [cell, particle], in cell sizes. The
-/// internal forces are the differences of neighbouring rows of this matrix times the stress, so it loses
-/// exactly what they lose; for domains it is their overlap with the cells, for points it is all in the cell
-/// they are in.
+/// How the grid sees stress: each particle's length in each cell [cell, particle], in cell sizes; in two
+/// dimensions its area in each row of cells, per area of the row. The internal forces are the differences of
+/// neighbouring rows of this matrix times the stress, so it loses exactly what they lose; for domains it is
+/// their overlap with the cells, for points it is all in the cell they are in.
 Eigen::MatrixXd lengths_in_cells(const Scene& scene, const Profile& profile) {
+  const std::size_t axis = axis_of(scene);
   const auto cells = static_cast<Eigen::Index>(
-      std::lround((scene.grid_upper[0] - scene.grid_lower[0]) / scene.cell_size) + 2 * ghost_layers);
+      std::lround((scene.grid_upper[axis] - scene.grid_lower[axis]) / scene.cell_size) + 2 * ghost_layers);
   const auto fill = [&]<class Shape>(Shape) {
     Eigen::MatrixXd lengths =
         Eigen::MatrixXd::Zero(cells, static_cast<Eigen::Index>(profile.position.size()));
     for (std::size_t p = 0; p < profile.position.size(); ++p) {
-      const double x = (profile.position[p] - scene.grid_lower[0]) / scene.cell_size + ghost_layers;
+      const double x = profile.position[p] / scene.cell_size + ghost_layers;
       const double half_size = profile.half_size[p] / scene.cell_size;
       const std::int32_t first = Shape::first_node(x, half_size);
       std::array<double, Shape::width> weight, gradient;
       Shape::evaluate(x, half_size, first, weight, gradient);
       double inside = 0.0;
       for (int k = 0; k + 1 < Shape::width; ++k) {
-        inside -= gradient[static_cast<std::size_t>(k)] * profile.volume[p] / scene.cell_size;
+        inside -=
+            gradient[static_cast<std::size_t>(k)] * profile.volume[p] / (width_of(scene) * scene.cell_size);
         lengths(first + k, static_cast<Eigen::Index>(p)) = inside;
       }
     }
@@ -123,12 +134,31 @@ Eigen::MatrixXd lengths_in_cells(const Scene& scene, const Profile& profile) {
 /// Fraction of full gravity that acts in the end.
 double final_fraction(const Gravity& gravity) { return gravity.fraction(gravity.settled_after()); }
 
+/// Modulus of compression along a column [Pa]: Young's in one dimension; between rollers the sides cannot
+/// give way.
+double modulus_along(const Scene& scene) {
+  const Material& material = scene.bodies.front().material;
+  const double modulus = std::visit([](const auto& law) { return law.youngs_modulus; }, material);
+  const auto* elastic = std::get_if<LinearElastic>(&material);
+  if (scene.dimension == 1 || !elastic) return modulus;
+  const double nu = elastic->poissons_ratio;
+  return modulus * (1 - nu) / ((1 + nu) * (1 - 2 * nu));
+}
+
 /// The column a scene describes, for the reference solutions.
 reference::Column column_of(const Scene& scene) {
   const Body& body = scene.bodies.front();
-  const double gravity = -scene.gravity.acceleration[0] * scene.gravity.level * final_fraction(scene.gravity);
-  const auto modulus = [](const auto& material) { return material.youngs_modulus; };
-  return {body.density * gravity, body.upper[0] - body.lower[0], std::visit(modulus, body.material)};
+  const std::size_t axis = axis_of(scene);
+  const double gravity =
+      -scene.gravity.acceleration[axis] * scene.gravity.level * final_fraction(scene.gravity);
+  return {body.density * gravity, body.upper[axis] - body.lower[axis], modulus_along(scene)};
+}
+
+/// The profile with positions above the base of the column instead of the origin [m].
+Profile heights_of(const Scene& scene, Profile profile) {
+  for (double& x : profile.initial_position) x -= scene.grid_lower[axis_of(scene)];
+  for (double& x : profile.position) x -= scene.grid_lower[axis_of(scene)];
+  return profile;
 }
 
 /// Everything the norms of one run are computed from.
@@ -137,9 +167,10 @@ struct Judging {
   const Scene& scene;
   const Record& record;
   reference::Column column;
+  Profile heights;  ///< the record's, with positions above the column's base
   Judgement result;
 
-  const Profile& profile() const { return record.profile; }
+  const Profile& profile() const { return heights; }
   void set(const std::string& name, double value) {
     if (std::isfinite(value)) result.metrics[name] = value;
   }
@@ -160,10 +191,16 @@ std::size_t top_particle(const Profile& profile) {
 }
 
 /// How far the top edge of the topmost particle's domain has come down [m]: every scheme carries the volume,
-/// so the edge is half the current length above the particle.
-double settlement_of(const Profile& profile) {
-  const std::size_t top = top_particle(profile);
-  return -(profile.displacement[top] + (profile.volume[top] - profile.initial_volume[top]) / 2);
+/// and nothing gives way sideways, so the edge is half the current length above the particle.
+double settlement_of(const Scene& scene, const Profile& profile) {
+  const std::size_t top = top_particle(profile), axis = axis_of(scene);
+  const double length = scene.cell_size / scene.bodies.front().particles_per_cell[axis];
+  return -(profile.displacement[top] + (profile.volume[top] / profile.initial_volume[top] - 1) * length / 2);
+}
+
+/// Height of the top above the base now [m].
+double top_of(const Judging& judging) {
+  return judging.column.height - settlement_of(judging.scene, judging.profile());
 }
 
 /// Error of the mean stress of every cell that the column fills, against the exact mean. What the grid's
@@ -171,8 +208,7 @@ double settlement_of(const Profile& profile) {
 void judge_cell_means(Judging& judging, const std::string& name, const reference::ColumnSolution& exact) {
   const Profile& profile = judging.profile();
   const double h = judging.scene.cell_size;
-  const double top = profile.position[top_particle(profile)] + profile.volume[top_particle(profile)] / 2;
-  const auto filled = static_cast<std::size_t>(std::max(0.0, top / h));
+  const auto filled = static_cast<std::size_t>(std::max(0.0, top_of(judging) / h));
   if (filled == 0) return;
   const Eigen::VectorXd mean = lengths_in_cells(judging.scene, profile) * as_vector(profile.stress);
   Values found(filled), expected(filled);
@@ -193,7 +229,8 @@ void judge_by_solution(Judging& judging, const std::string& name) {
   judging.set_norms(name + ".stress", relative_norms(profile.stress, stress, profile.volume));
   judging.set_norms(name + ".displacement",
                     relative_norms(profile.displacement, displacement, profile.initial_volume));
-  judging.set(name + ".settlement", std::abs(settlement_of(profile) / exact->settlement() - 1));
+  judging.set(name + ".settlement",
+              std::abs(settlement_of(judging.scene, profile) / exact->settlement() - 1));
   judging.result.curves.push_back({"stress", name, profile.position, stress, "position"});
   judging.result.curves.push_back(
       {"displacement", name, profile.initial_position, displacement, "initial_position"});
@@ -263,7 +300,7 @@ double count_non_finite(const Record& record) {
 
 void judge_final_state(Judging& judging) {
   const Profile& profile = judging.profile();
-  judging.set("settlement", settlement_of(profile));
+  judging.set("settlement", settlement_of(judging.scene, profile));
   double least = 1.0;
   for (std::size_t p = 0; p < profile.volume.size(); ++p) {
     least = std::min(least, profile.volume[p] / profile.initial_volume[p]);
@@ -344,22 +381,33 @@ const std::vector<std::string>& reference_catalogue() {
   return catalogue;
 }
 
-std::string why_unsuited(const std::string& /*reference*/, const Scene& scene) {
+std::string why_unsuited(const std::string& reference, const Scene& scene) {
   // Every reference solution there is describes a column under its own weight.
   const Body& body = scene.bodies.front();
-  if (scene.dimension != 1) return "one dimension";
+  const std::size_t axis = axis_of(scene);
+  const std::string name = axis == 0 ? "x" : "y";
   if (scene.bodies.size() != 1) return "a single body";
-  if (scene.edges[0][0] == Condition::free) return "a fixed x_lower edge";
-  if (scene.edges[0][1] != Condition::free) return "a free x_upper edge";
-  if (body.lower[0] != scene.grid_lower[0]) return "a body that stands on the grid's lower edge";
-  if (!(scene.gravity.acceleration[0] < 0) || scene.gravity.level == 0)
+  if (scene.edges[axis][0] == Condition::free) return "a fixed " + name + "_lower edge";
+  if (scene.edges[axis][1] != Condition::free) return "a free " + name + "_upper edge";
+  if (body.lower[axis] != scene.grid_lower[axis]) return "a body that stands on the grid's lower edge";
+  if (!(scene.gravity.acceleration[axis] < 0) || scene.gravity.level == 0)
     return "gravity towards the lower edge";
   if (!(final_fraction(scene.gravity) > 0)) return "gravity that still acts in the end";
+  if (scene.dimension == 1) return "";
+  if (reference == "zhang") return "one dimension";
+  if (scene.edges[0] != std::array{Condition::roller, Condition::roller}) return "rollers on both sides";
+  if (body.lower[0] != scene.grid_lower[0] || body.upper[0] != scene.grid_upper[0])
+    return "a body as wide as the grid";
+  if (scene.gravity.acceleration[0] != 0) return "gravity along the column";
+  if (std::holds_alternative<MohrCoulomb>(body.material) && reference != "equilibrium")
+    return "an elastic body";
   return "";
 }
 
 Judgement judge(const Case& definition, const RunRequest& request, const Record& record) {
-  Judging judging{definition, request.scene, record, column_of(request.scene), {}};
+  Judging judging{
+      definition, request.scene, record, column_of(request.scene), heights_of(request.scene, record.profile),
+      {}};
   judging.set("completed", record.completed() ? 1 : 0);
   judging.set("cell_crossings", static_cast<double>(record.cell_crossings));
   judging.set("steps", static_cast<double>(record.cost.steps));

@@ -15,6 +15,7 @@ constexpr Unit time_units[] = {{"s", 0}, {"ms", -3}, {"us", -6}};
 constexpr Unit pressure_units[] = {{"Pa", 0}, {"kPa", 3}, {"MPa", 6}, {"GPa", 9}};
 constexpr Unit density_units[] = {{"kg/m^3", 0}, {"g/cm^3", 3}, {"t/m^3", 3}};
 constexpr Unit acceleration_units[] = {{"m/s^2", 0}};
+constexpr Unit angle_units[] = {{"deg", 0}};
 constexpr Unit velocity_units[] = {{"m/s", 0}, {"mm/s", -3}, {"cm/s", -2}};
 
 struct KindEntry {
@@ -24,13 +25,14 @@ struct KindEntry {
   std::span<const Unit> units;
 };
 
-constexpr std::array<KindEntry, 6> kinds = {{
+constexpr std::array<KindEntry, 7> kinds = {{
     {QuantityKind::length, "a length", "0.02 m", length_units},
     {QuantityKind::time, "a time", "0.5 s", time_units},
     {QuantityKind::pressure, "a pressure", "10 kPa", pressure_units},
     {QuantityKind::density, "a density", "1000 kg/m^3", density_units},
     {QuantityKind::acceleration, "an acceleration", "-9.8 m/s^2", acceleration_units},
     {QuantityKind::velocity, "a velocity", "0.1 m/s", velocity_units},
+    {QuantityKind::angle, "an angle", "30 deg", angle_units},
 }};
 
 /// Units that are easily taken for another kind's, with the way out.

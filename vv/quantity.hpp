@@ -8,7 +8,7 @@
 namespace mpm::vv {
 
 /// What a number with a unit measures.
-enum class QuantityKind { length, time, pressure, density, acceleration, velocity };
+enum class QuantityKind { length, time, pressure, density, acceleration, velocity, angle };
 
 /// A unit a quantity may be written in: 10^`exponent` of the kind's SI unit.
 ///
@@ -18,7 +18,7 @@ struct Unit {
   int exponent;
 };
 
-/// The units of a kind, the SI unit first.
+/// The units of a kind, the SI unit first; an angle has only degrees.
 std::span<const Unit> units_of(QuantityKind kind);
 
 /// What a quantity of this kind looks like, for a person: `a length such as "0.02 m" (units m, mm, cm, km)`.
@@ -35,7 +35,7 @@ class QuantityError : public std::runtime_error {
   std::string expected_, found_;
 };
 
-/// The value of `text` in the SI unit of `kind`: the double nearest to the decimal number written.
+/// The value of `text` in the SI unit of `kind`, an angle in degrees: the double nearest to the decimal number written.
 ///
 /// `text` is a decimal number, one blank, and a unit: "0.02 m", "-9.8 m/s^2", "1e4 kPa". Independent of the
 /// locale. Throws QuantityError for anything else: no unit or one of another kind, text before or after,

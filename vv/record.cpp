@@ -25,8 +25,11 @@ constexpr const char* record_schema = "mpmvv-record/1";
 constexpr std::int64_t particle_steps_per_pulse = 1
                                                   << 16;  // a few milliseconds: prompt, yet too rare to cost
 
-/// The component of a vector or stress that one-number profiles and probes hold.
-constexpr std::size_t along_column = 0;
+/// The component of a vector or stress that one-number profiles and probes hold: the one along the last axis,
+/// upwards. The first stress components are the normal ones, so their number is the axis too.
+std::size_t along_column(const ParticleFields& fields) {
+  return static_cast<std::size_t>(fields.dimension) - 1;
+}
 
 class Fnv1a {
  public:
@@ -219,7 +222,7 @@ class Sampler {
   void sample(const ParticleFields& fields, double time, double time_step) {
     if (!history_.time.empty() && history_.time.back() == time) return;
     history_.time.push_back(time);
-    history_.value.push_back(quantity_at(fields, history_.quantity, particle_, along_column));
+    history_.value.push_back(quantity_at(fields, history_.quantity, particle_, along_column(fields)));
     next_ = every_ * (std::floor((time + 0.5 * time_step) / every_) + 1.0);
   }
 
@@ -318,15 +321,15 @@ class Recorder {
   }
 
   static Profile profile_of(const ParticleFields& fields) {
-    const std::size_t particles = fields.mass.size();
-    return {.initial_position = component_of(fields.initial_position, particles, along_column),
-            .displacement = component_of(fields.displacement, particles, along_column),
-            .position = component_of(fields.position, particles, along_column),
-            .stress = component_of(fields.stress, particles, along_column),
+    const std::size_t particles = fields.mass.size(), axis = along_column(fields);
+    return {.initial_position = component_of(fields.initial_position, particles, axis),
+            .displacement = component_of(fields.displacement, particles, axis),
+            .position = component_of(fields.position, particles, axis),
+            .stress = component_of(fields.stress, particles, axis),
             .volume = fields.volume,
             .initial_volume = fields.initial_volume,
             .mass = fields.mass,
-            .half_size = component_of(fields.half_size, particles, along_column)};
+            .half_size = component_of(fields.half_size, particles, axis)};
   }
 
   static std::string digest_of(const ParticleFields& fields, const Record& record) {

@@ -13,15 +13,15 @@
 namespace mpm::vv {
 
 /// The state at the end of a run, one entry per particle in particle order; SI units, tension positive.
-/// Of a quantity with several components it holds the one along the column.
+/// Of a quantity with several components it holds the one along the last axis, upwards.
 struct Profile {
   std::vector<double> initial_position;  ///< X [m]
   std::vector<double> displacement;      ///< x - X [m], kept apart so that it loses no digits in float
   std::vector<double> position;          ///< x [m]
   std::vector<double> stress;            ///< Cauchy [Pa]
-  std::vector<double> volume;            ///< current [m] (length in 1D)
-  std::vector<double> initial_volume;    ///< [m]
-  std::vector<double> mass;              ///< [kg/m^2 in 1D]
+  std::vector<double> volume;            ///< current [m in 1D, m^2 in 2D]
+  std::vector<double> initial_volume;    ///< same unit
+  std::vector<double> mass;              ///< [kg per unit of the absent dimensions]
   std::vector<double> half_size;         ///< current [m]; 0 for scheme mpm
 };
 

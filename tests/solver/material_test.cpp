@@ -44,14 +44,33 @@ TEST(VerificationOfLaws, ZhangIsAFunctionOfTheStretchAlone) {
     EXPECT_NEAR(stress[0], 2e7 * (1 - 1 / std::sqrt(stretch)), 1e-6);
     // Its tangent at rest is Young's modulus, at any stretch E lambda^(-3/2).
     const double step = 1e-6;
-    const double tangent = (law.update({0.0}, {0.0}, stretch + step)[0] - law.update({0.0}, {0.0}, stretch - step)[0]) / (2 * step);
+    const double tangent =
+        (law.update({0.0}, {0.0}, stretch + step)[0] - law.update({0.0}, {0.0}, stretch - step)[0]) /
+        (2 * step);
     EXPECT_NEAR(tangent, 1e7 * std::pow(stretch, -1.5), 1e7 * 1e-8);
   }
 }
 
+TEST(VerificationOfLaws, TurningAStressKeepsItsInvariantsAndComesBack) {
+  const SymmetricTensor<2, double> stress{3.0, -1.0, 0.5, 2.0};
+  const auto turned = rotated(stress, 0.7);
+  EXPECT_NEAR(turned[0] + turned[1], 2.0, 1e-15);
+  EXPECT_NEAR(turned[0] * turned[1] - turned[3] * turned[3], -7.0, 1e-14);
+  EXPECT_EQ(turned[2], 0.5);
+  const auto back = rotated(turned, -0.7);
+  for (std::size_t c = 0; c < 4; ++c) EXPECT_NEAR(back[c], stress[c], 1e-15);
+  // A pull along x turned by a right angle is a pull along y.
+  const auto quarter = rotated(SymmetricTensor<2, double>{1.0, 0.0, 0.0, 0.0}, std::acos(0.0));
+  EXPECT_NEAR(quarter[0], 0.0, 1e-15);
+  EXPECT_NEAR(quarter[1], 1.0, 1e-15);
+  // By a small angle anticlockwise, tension along x gets a positive shear component.
+  EXPECT_NEAR(rotated(SymmetricTensor<2, double>{1.0, 0.0, 0.0, 0.0}, 1e-6)[3], 1e-6, 1e-15);
+}
+
 TEST(Laws, UpdateVolumeBeforeStress) {
   Particles<1, double> particles;
-  particles.stress[0] = particles.strain_increment[0] = particles.volume = particles.initial_volume = Field<double>::Ones(1);
+  particles.stress[0] = particles.strain_increment[0] = particles.volume = particles.initial_volume =
+      Field<double>::Ones(1);
   particles.strain_increment[0][0] = -0.19;
   update_stress(ZhangElasticLaw<double>(ZhangElastic{1e7}), {0, 1}, particles);
   EXPECT_NEAR(particles.volume[0], 0.81, 1e-15);

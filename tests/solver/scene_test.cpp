@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <limits>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -68,11 +69,35 @@ void elastic(Scene& scene, double modulus, double ratio) {
   body(scene).material = LinearElastic{modulus, ratio};
 }
 
+MohrCoulomb soil(double friction_angle, double cohesion, double dilation_angle) {
+  return {1e6, 0.3, friction_angle, cohesion, dilation_angle};
+}
+
 const std::vector<Impossible>& impossible_scenes() {
   static const std::vector<Impossible> all = {
       {"/dimension", "1 or 2", "0", [](Scene& s) { s.dimension = 0; }},
       {"/dimension", "1 or 2", "3", [](Scene& s) { s.dimension = 3; }},
-      {"/dimension", "the only number of dimensions that can be simulated", "2", [](Scene&) {}, block()},
+      {"/objectivity", "none in one dimension", "jaumann",
+       [](Scene& s) { s.objectivity = Objectivity::jaumann; }},
+      {"/objectivity", "a known objectivity", "7",
+       [](Scene& s) { s.objectivity = static_cast<Objectivity>(7); }, block()},
+      {"/bodies/0/material/law", "a law for one dimension", "mohr_coulomb",
+       [](Scene& s) { body(s).material = soil(0.3, 0.0, 0.0); }},
+      {"/bodies/0/material/friction_angle", "from 0 to below 90 deg", "90 deg",
+       [](Scene& s) { body(s).material = soil(std::numbers::pi / 2, 0.0, 0.0); }, block()},
+      {"/bodies/0/material/friction_angle", "from 0 to below 90 deg", "-",
+       [](Scene& s) { body(s).material = soil(-0.1, 0.0, 0.0); }, block()},
+      {"/bodies/0/material/dilation_angle", "from 0 to the friction angle", "deg",
+       [](Scene& s) { body(s).material = soil(0.3, 0.0, 0.31); }, block()},
+      {"/bodies/0/material/cohesion", "a pressure, zero or above", "-1 Pa",
+       [](Scene& s) { body(s).material = soil(0.3, -1.0, 0.0); }, block()},
+      {"/bodies/0/material/cohesion", "a pressure above zero where the friction angle is zero", "0 Pa",
+       [](Scene& s) { body(s).material = soil(0.0, 0.0, 0.0); }, block()},
+      {"/bodies/0/velocity/1", "a finite velocity", "inf",
+       [](Scene& s) {
+         body(s).velocity = {0.0, std::numeric_limits<double>::infinity()};
+       },
+       block()},
       {"/scheme", "a known scheme", "7", [](Scene& s) { s.scheme = static_cast<Scheme>(7); }},
       {"/update_order", "a known update order", "7",
        [](Scene& s) { s.update_order = static_cast<UpdateOrder>(7); }},

@@ -39,7 +39,8 @@ class EveryShapeFunction : public testing::Test {};
 using Shapes = testing::Types<LinearShape, GimpShape>;
 TYPED_TEST_SUITE(EveryShapeFunction, Shapes);
 
-// Round-off of a weight: differences of numbers up to 1/2 divided by twice the half size, at places up to 400 cells.
+// Round-off of a weight: differences of numbers up to 1/2 divided by twice the half size, at places up to 400
+// cells.
 double round_off(double half_size) { return 400 * std::numeric_limits<double>::epsilon() / half_size; }
 
 TYPED_TEST(EveryShapeFunction, SumsToOneWithGradientsThatSumToZero) {
@@ -83,7 +84,8 @@ TYPED_TEST(EveryShapeFunction, HasTheGradientOfItsWeight) {
       const auto node = s.first + static_cast<std::int32_t>(k);
       const double slope = (after.weight_of(node) - before.weight_of(node)) / (2 * step);
       // A kink of the gradient within the step costs at most step / (half size).
-      ASSERT_NEAR(slope, s.gradient[k], 1e-6 / half_size + round_off(half_size) / step) << position << " " << half_size;
+      ASSERT_NEAR(slope, s.gradient[k], 1e-6 / half_size + round_off(half_size) / step)
+          << position << " " << half_size;
     }
   });
 }

@@ -14,13 +14,13 @@ std::atomic<long> allocations{0};
 }
 
 // Counts every allocation of this test program, so that a step can be shown to make none.
-void* operator new(std::size_t size) {
+[[gnu::noinline]] void* operator new(std::size_t size) {
   ++allocations;
   if (void* memory = std::malloc(size)) return memory;
   throw std::bad_alloc();
 }
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 namespace {
 
@@ -74,7 +74,8 @@ TEST(VerificationOfMotion, FreeFallIsExact) {
         // Symplectic Euler falls by g (t^2 + t dt) / 2 to round-off.
         EXPECT_NEAR(fields.displacement[p], -9.8 * (t * t + t * dt) / 2, 1e-11);
         EXPECT_NEAR(fields.velocity[p], -9.8 * t, 1e-9);  // round-off strains times the modulus, summed
-        // 100 Pa of 10 MPa would already be a strain of 1e-5; round-off of the velocity gradient is far below.
+        // 100 Pa of 10 MPa would already be a strain of 1e-5; round-off of the velocity gradient is far
+        // below.
         EXPECT_NEAR(fields.stress[p], 0.0, 1e-3);
       }
     }
@@ -133,7 +134,8 @@ TEST(Simulation, EndsWithATypedOutcomeWhenAParticleLeavesTheGrid) {
 }
 
 TEST(Simulation, EndsWithATypedOutcomeWhenADomainOutgrowsItsShapeFunction) {
-  // Hung from its base with twenty times its weight in tension, the column stretches until the domains are too long.
+  // Hung from its base with twenty times its weight in tension, the column stretches until the domains are
+  // too long.
   Scene scene = column_scene(Scheme::cpgimp);
   scene.gravity.acceleration = {9.8, 0.0};
   scene.gravity.level = 2000;
@@ -170,8 +172,8 @@ TEST(Simulation, EndsInTheSameBitsEveryTime) {
 }
 
 TEST(VerificationOfMotion, ChangeOfUnitsChangesNothing) {
-  // Lengths in units of 2^-20 m, masses in units of 2^30 kg: powers of two, so bits must not change. An absolute
-  // mass threshold would.
+  // Lengths in units of 2^-20 m, masses in units of 2^30 kg: powers of two, so bits must not change. An
+  // absolute mass threshold would.
   const double length = std::ldexp(1.0, 20), mass = std::ldexp(1.0, -30);
   for (Scheme scheme : every_scheme) {
     const Scene scene = column_scene(scheme, 16);
@@ -194,15 +196,16 @@ TEST(VerificationOfMotion, ChangeOfUnitsChangesNothing) {
 }
 
 TEST(VerificationOfMotion, UndampedColumnSwingsToTwiceItsStaticSettlement) {
-  // Linear theory: a bar loaded at once by its weight swings to 2 * q h0^2 / (2E) after 2 h0/c. At 0.01G the strains
-  // are 1e-5, so the theory is exact to that order; the grid disperses the wave front, hence 2 %.
+  // Linear theory: a bar loaded at once by its weight swings to 2 * q h0^2 / (2E) after 2 h0/c. At 0.01G the
+  // strains are 1e-5, so the theory is exact to that order; the grid disperses the wave front, hence 2 %.
   for (Scheme scheme : every_scheme) {
     Scene scene = column_scene(scheme, 100);
     scene.damping = 0.0;
     scene.gravity.level = 0.01;
     scene.termination = AtTime{0.02};
     const double static_settlement = 1000 * 9.8 * 0.01 / (2 * 1e7);
-    EXPECT_NEAR(-run_to_end(scene).particles().displacement.back(), 2 * static_settlement, 0.04 * static_settlement);
+    EXPECT_NEAR(-run_to_end(scene).particles().displacement.back(), 2 * static_settlement,
+                0.04 * static_settlement);
   }
 }
 

@@ -9,8 +9,9 @@ namespace {
 
 using namespace mpm;
 
-/// A free bar with two particles per cell whose last particle stands a quarter of a cell past its node, nudged by a
-/// pull so weak that the geometry stays as it is: the largest speed its particles reach after `steps` steps.
+/// A free bar with two particles per cell whose last particle stands a quarter of a cell past its node,
+/// nudged by a pull so weak that the geometry stays as it is: the largest speed its particles reach after
+/// `steps` steps.
 double speed_of_free_bar(Scheme scheme, UpdateOrder order, double courant, int steps) {
   Scene scene = test::column_scene(scheme, 10, 2);
   scene.update_order = order;
@@ -20,7 +21,8 @@ double speed_of_free_bar(Scheme scheme, UpdateOrder order, double courant, int s
   scene.grid_upper[0] = 1.5;
   scene.bodies[0].upper[0] = 1.05;
   scene.time_step = StableFraction{courant};
-  // A rigid pull excites nothing; particle weights at the cut end turn it into strain at round-off, which is enough.
+  // A rigid pull excites nothing; particle weights at the cut end turn it into strain at round-off, which is
+  // enough.
   scene.gravity.level = 1e-9;
   scene.gravity.loading = StagedLoading{10 * courant * 0.1 / 100.0, {1.0, 0.0}};
   scene.termination = AtTime{1e9};
@@ -51,8 +53,10 @@ TEST_P(StabilityOfAFreeBar, HoldsBelowTheLimitAndIsLostAboveIt) {
 
 // Two particles per cell, end particle 0.25 cells past its node: the limits of the linearised step.
 INSTANTIATE_TEST_SUITE_P(TwoParticlesPerCell, StabilityOfAFreeBar,
-                         testing::Values(Limit{Scheme::mpm, UpdateOrder::usl, 0.657}, Limit{Scheme::ugimp, UpdateOrder::usl, 0.657},
-                                         Limit{Scheme::mpm, UpdateOrder::musl, 1.73}, Limit{Scheme::ugimp, UpdateOrder::musl, 1.73},
+                         testing::Values(Limit{Scheme::mpm, UpdateOrder::usl, 0.657},
+                                         Limit{Scheme::ugimp, UpdateOrder::usl, 0.657},
+                                         Limit{Scheme::mpm, UpdateOrder::musl, 1.73},
+                                         Limit{Scheme::ugimp, UpdateOrder::musl, 1.73},
                                          Limit{Scheme::cpgimp, UpdateOrder::usf, 1.73}));
 
 }  // namespace

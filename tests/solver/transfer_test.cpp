@@ -147,6 +147,23 @@ TYPED_TEST(EveryTransfer, GathersALinearVelocityFieldExactly) {
   }
 }
 
+TYPED_TEST(EveryTransfer, GathersTheSpinOfARotation) {
+  if constexpr (TypeParam::dimension == 2) {
+    TypeParam block;
+    block.particles.rotation.setZero(block.particles.count());
+    constexpr double spin = 0.4, time_step = 1e-2;
+    for (std::size_t i = 0; i < block.grid.motion.size(); ++i) {
+      block.grid.motion[i].velocity = {-spin * block.place(i, 1), spin * block.place(i, 0)};
+    }
+    block.transfer.gather_rotation(block.grid, time_step, block.particles);
+    block.transfer.gather_strain(block.grid, time_step, block.particles);
+    for (Eigen::Index p = 0; p < block.particles.count(); ++p) {
+      ASSERT_NEAR(block.particles.rotation[p], spin * time_step, 1e-14);
+      for (const auto& component : block.particles.strain_increment) ASSERT_NEAR(component[p], 0.0, 1e-14);
+    }
+  }
+}
+
 TYPED_TEST(EveryTransfer, BlendsFlipAndPic) {
   TypeParam block;
   for (auto& motion : block.grid.motion) motion = {.velocity = {3.0}, .acceleration = {-10.0}};

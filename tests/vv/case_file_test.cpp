@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -351,22 +352,61 @@ TEST(CaseFile, reads_figures) {
   EXPECT_EQ(read.figures[3].quantity, "top");
 }
 
-TEST(CaseFile, knows_two_dimensions_but_cannot_simulate_them_yet) {
-  Json text = valid_case();
+/// A block of soil in plane strain.
+Json soil_case() {
+  Json text = two_bodies();
   Json& scene = text["scene"];
   scene["dimension"] = 2;
+  scene["objectivity"] = "jaumann";
   scene["grid"]["lower"].push_back("0 m");
   scene["grid"]["upper"].push_back("1.2 m");
   scene["grid"]["edges"]["y_lower"] = "fixed";
   scene["grid"]["edges"]["y_upper"] = "free";
-  scene["bodies"][0]["lower"].push_back("0 m");
-  scene["bodies"][0]["upper"].push_back("1 m");
-  scene["bodies"][0]["particles_per_cell"].push_back(2);
-  scene["gravity"]["acceleration"].push_back("0 m/s^2");
+  scene["bodies"].erase(1);
+  Json& body = scene["bodies"][0];
+  body["lower"].push_back("0 m");
+  body["upper"].push_back("1 m");
+  body["particles_per_cell"].push_back(2);
+  body["velocity"] = {"0 m/s", "-2 cm/s"};
+  body["material"] = {{"law", "mohr_coulomb"}, {"youngs_modulus", "1000 kPa"},
+                      {"poissons_ratio", 0.3}, {"friction_angle", "20 deg"},
+                      {"cohesion", "0.5 kPa"}, {"dilation_angle", "0 deg"}};
+  scene["gravity"]["acceleration"].push_back("-9.8 m/s^2");
   text["probes"][0]["at"].push_back("50 cm");
-  EXPECT_FALSE(schema_violation(text)) << schema_violation(text)->description;
-  expect_message(refusal_of(text.dump()), "column.json", "/scene/dimension",
-                 "1, the only number of dimensions that can be simulated", "2");
+  return text;
+}
+
+TEST(CaseFile, reads_soil_in_two_dimensions) {
+  const Scene scene = parsed(soil_case()).runs.front().scene;
+  EXPECT_EQ(scene.dimension, 2);
+  EXPECT_EQ(scene.objectivity, Objectivity::jaumann);
+  EXPECT_EQ(scene.bodies[0].velocity[1], -0.02);
+  ASSERT_TRUE(std::holds_alternative<MohrCoulomb>(scene.bodies[0].material));
+  const MohrCoulomb& soil = std::get<MohrCoulomb>(scene.bodies[0].material);
+  EXPECT_EQ(soil.youngs_modulus, 1e6);
+  EXPECT_EQ(soil.poissons_ratio, 0.3);
+  EXPECT_DOUBLE_EQ(soil.friction_angle, std::acos(-1.0) / 9);
+  EXPECT_EQ(soil.cohesion, 500.0);
+  EXPECT_EQ(soil.dilation_angle, 0.0);
+}
+
+TEST(CaseFile, refuses_soil_without_its_parameters) {
+  for (const char* key : {"friction_angle", "cohesion", "dilation_angle", "poissons_ratio"}) {
+    Json text = soil_case();
+    text["scene"]["bodies"][0]["material"].erase(key);
+    EXPECT_TRUE(schema_violation(text)) << key;
+    expect_message(refusal_of(text.dump()), "column.json", std::string("/scene/bodies/0/material/") + key, "",
+                   "nothing: the key is missing");
+  }
+  Json text = soil_case();
+  text["scene"]["bodies"][0]["material"]["friction_angle"] = "0.35 rad";
+  EXPECT_TRUE(schema_violation(text));
+  expect_message(refusal_of(text.dump()), "column.json", "/scene/bodies/0/material/friction_angle",
+                 "an angle such as \"30 deg\" (unit deg)", "\"0.35 rad\"");
+  text = soil_case();
+  text["scene"]["bodies"][0]["material"]["dilation_angle"] = "21 deg";
+  expect_message(refusal_of(text.dump()), "column.json", "/scene/bodies/0/material/dilation_angle",
+                 "from 0 to the friction angle, 20 deg", "21 deg");
 }
 
 // ---- what is refused
@@ -458,8 +498,8 @@ const std::vector<Malformed>& malformed_cases() {
        "one of musl, usf, usl", "\"MUSL\"", Schema::refuses},
       {R"([{"op": "replace", "path": "/scene/grid/edges/x_upper", "value": "open"}])",
        "/scene/grid/edges/x_upper", "one of free, roller, fixed", "\"open\"", Schema::refuses},
-      {R"([{"op": "replace", "path": "/scene/bodies/0/material/law", "value": "mohr_coulomb"}])",
-       "/scene/bodies/0/material/law", "one of linear_elastic, zhang_elastic", "\"mohr_coulomb\"",
+      {R"([{"op": "replace", "path": "/scene/bodies/0/material/law", "value": "cam_clay"}])",
+       "/scene/bodies/0/material/law", "one of linear_elastic, zhang_elastic, mohr_coulomb", "\"cam_clay\"",
        Schema::refuses},
       {R"([{"op": "replace", "path": "/scene/termination/type", "value": "never"}])",
        "/scene/termination/type", "one of at_time, at_rest", "\"never\"", Schema::refuses},
