@@ -441,14 +441,39 @@ data case_section(const vv::CaseVerdict& verdict, const std::vector<DrawnFigure>
   return section;
 }
 
-data claims_row(const vv::CaseVerdict& verdict) {
+/// What became of a claim: its finding, if every gate it rests on was applied and is good.
+std::string chip_of(const vv::Claim& claim, const std::vector<PlacedGate>& evidence) {
+  const auto is_good = [](const PlacedGate& gate) { return gate.result->good(); };
+  const bool complete = std::all_of(claim.gates.begin(), claim.gates.end(), [&](const std::string& id) {
+    return std::any_of(evidence.begin(), evidence.end(),
+                       [&](const PlacedGate& gate) { return gate.result->id == id; });
+  });
+  if (evidence.empty() || !complete) return chip("open", "NOT MEASURED");
+  if (!std::all_of(evidence.begin(), evidence.end(), is_good)) return chip("fail", "IN DOUBT");
+  switch (claim.finding) {
+    case vv::Finding::seen:
+      return chip("pass", "SEEN");
+    case vv::Finding::not_seen:
+      return chip("contrary", "NOT SEEN");
+    case vv::Finding::depends:
+      return chip("contrary", "DEPENDS");
+  }
+  return chip("fail", "UNKNOWN");
+}
+
+data claim_row(const vv::Claim& claim, const vv::CaseVerdict& verdict) {
+  std::vector<PlacedGate> evidence;
+  for (const PlacedGate& gate : gates_of(verdict)) {
+    if (std::find(claim.gates.begin(), claim.gates.end(), gate.result->id) != claim.gates.end()) {
+      evidence.push_back(gate);
+    }
+  }
   data row = object({{"id", verdict.definition.id},
                      {"paper", verdict.definition.figure_of_paper},
-                     {"chip", chip_of(verdict.status)}});
-  data claims = list();
-  for (const std::string& claim : verdict.definition.claims) claims << object({{"text", claim}});
-  row.set("list", claims);
-  row.set("gates", gate_tallies(gates_of(verdict)));
+                     {"text", claim.text},
+                     {"remark", claim.remark},
+                     {"chip", chip_of(claim, evidence)}});
+  row.set("gates", gate_tallies(evidence));
   return row;
 }
 
@@ -647,7 +672,7 @@ std::string report_html(const vv::CampaignVerdict& verdict, const std::vector<Dr
   for (const vv::CaseVerdict& c : verdict.cases) {
     case_list << object(
         {{"id", c.definition.id}, {"title", c.definition.title}, {"chip", chip_of(c.status)}});
-    claims << claims_row(c);
+    for (const vv::Claim& claim : c.definition.claims) claims << claim_row(claim, c);
     sections << case_section(c, figures, figure_number);
     const std::string file = c.definition.file.filename().string();
     commands << object({{"file", file.empty() ? c.definition.id + ".json" : file}});

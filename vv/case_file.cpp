@@ -634,6 +634,22 @@ std::vector<std::string> read_texts(const JsonPlace& place) {
 
 std::string optional_text(const JsonPlace& place) { return place.present() ? place.text() : ""; }
 
+Claim read_claim(const JsonPlace& place, const Case& read) {
+  place.allow_only({"claim", "finding", "gates", "remark"});
+  Claim claim;
+  claim.text = place["claim"].text();
+  claim.finding = place["finding"].choice<Finding>(
+      {{"seen", Finding::seen}, {"not_seen", Finding::not_seen}, {"depends", Finding::depends}});
+  std::vector<std::string> known;
+  for (const Gate& gate : read.gates) known.push_back(gate.id);
+  for (const JsonPlace& gate : place["gates"].some_elements()) claim.gates.push_back(gate.one_of(known));
+  claim.remark = optional_text(place["remark"]);
+  if (claim.finding != Finding::seen && claim.remark.empty()) {
+    place["remark"].refuse("a remark that says why the claim is not simply seen");
+  }
+  return claim;
+}
+
 bool optional_flag(const JsonPlace& place, bool otherwise) {
   return place.present() ? place.flag() : otherwise;
 }
@@ -643,7 +659,6 @@ void read_description(const JsonPlace& place, Case& read) {
   read.title = place["title"].text();
   read.description = place["description"].text();
   read.figure_of_paper = optional_text(place["figure_of_paper"]);
-  read.claims = read_texts(place["claims"]);
   read.notes = read_texts(place["notes"]);
   read.quick = optional_flag(place["quick"], true);
   read.repeat_on_other_threads = optional_flag(place["repeat_on_other_threads"], false);
@@ -678,6 +693,9 @@ void read_parts(Case& read) {
     for (const JsonPlace& probe : probes.elements()) read.probes.push_back(read_probe(probe, read));
   }
   for (const JsonPlace& gate : place["gates"].some_elements()) read.gates.push_back(read_gate(gate, read));
+  if (const JsonPlace claims = place["claims"]; claims.present()) {
+    for (const JsonPlace& claim : claims.elements()) read.claims.push_back(read_claim(claim, read));
+  }
   if (const JsonPlace figures = place["figures"]; figures.present()) {
     for (const JsonPlace& figure : figures.elements()) read.figures.push_back(read_figure(figure, read));
   }

@@ -50,6 +50,21 @@ struct Gate {
   bool must_fail = false;  ///< a control: the configuration is known to be bad and the gate must turn red
 };
 
+/// What a claim turned out to be, as long as the gates it rests on are good.
+enum class Finding {
+  seen,      ///< the runs show what is claimed
+  not_seen,  ///< the runs show that it is not so here
+  depends,   ///< on circumstances the remark names
+};
+
+/// A statement of the paper or of theory that the case puts to the test.
+struct Claim {
+  std::string text;  ///< who says what, and where
+  Finding finding = Finding::seen;
+  std::vector<std::string> gates;  ///< ids of the gates that establish the finding, at least one
+  std::string remark;              ///< for a person; required unless the claim is seen
+};
+
 struct SweepAxis {
   std::string parameter;  ///< JSON pointer into the case, below /scene
   std::vector<Json> values;
@@ -88,7 +103,7 @@ struct RunRequest {
 struct Case {
   std::string id, title, description;
   std::string figure_of_paper;              ///< for example "Figure 1"; may be empty
-  std::vector<std::string> claims;          ///< what the paper (or theory) says that this case puts to the test
+  std::vector<Claim> claims;                ///< what the paper (or theory) says that this case puts to the test
   std::vector<std::string> notes;           ///< what a reader should know
   bool quick = true;                        ///< part of `report --quick`
   bool repeat_on_other_threads = false;     ///< run everything a second time on another number of threads: `bits_differ`

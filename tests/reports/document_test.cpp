@@ -101,11 +101,29 @@ TEST(Document, AFailedRunDoesNotHideInASharedRow) {
   EXPECT_TRUE(has(report_html(campaign, {}), "10 runs alike"));
 }
 
+TEST(Document, AFindingHoldsOnlyWhileItsGatesAreGood) {
+  vv::CampaignVerdict campaign = support::demo_campaign();
+  for (vv::RunVerdict& run : campaign.cases[0].runs)
+    for (vv::GateResult& gate : run.gates)
+      if (!gate.good()) gate.status = vv::GateStatus::pass;
+  vv::Claim& claim = campaign.cases[0].definition.claims[0];
+  EXPECT_TRUE(has(report_html(campaign, {}), ">SEEN<"));
+  claim.finding = vv::Finding::not_seen;
+  EXPECT_TRUE(has(report_html(campaign, {}), ">NOT SEEN<"));
+  claim.gates = {"smooth", "never_applied"};
+  EXPECT_TRUE(has(report_html(campaign, {}), ">NOT MEASURED<"));
+  claim.gates = {"smooth"};
+  campaign.cases[0].runs[1].gates[0].status = vv::GateStatus::fail;
+  const std::string html = report_html(campaign, {});
+  EXPECT_TRUE(has(html, ">IN DOUBT<"));
+  EXPECT_FALSE(has(html, ">NOT SEEN<"));
+}
+
 TEST(Document, EscapesWhatTheVerdictSays) {
   vv::CampaignVerdict campaign = support::demo_campaign();
   const std::string evil = "<script>alert('x')</script> & \"quoted\"";
   campaign.host = campaign.cases[0].definition.title = campaign.cases[0].definition.notes[0] = evil;
-  campaign.cases[0].definition.claims = {evil};
+  campaign.cases[0].definition.claims = {{evil, vv::Finding::not_seen, {"smooth"}, evil}};
   campaign.cases[0].definition.figures[0].caption = evil;
   campaign.cases[0].runs[0].gates[0].reason = evil;
   campaign.cases[0].runs[0].gates[0].scope = evil;

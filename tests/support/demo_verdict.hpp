@@ -144,7 +144,8 @@ inline vv::CaseVerdict demo_levels() {
   verdict.definition.title = "1D elastic column under 1G, 10G, 20G and 50G";
   verdict.definition.figure_of_paper = "Figure 1";
   verdict.definition.description = "A made-up column of 50 particles, 1 m high.";
-  verdict.definition.claims = {"cpGIMP follows the exact stress at every level."};
+  verdict.definition.claims = {
+      {"cpGIMP follows the exact stress at every level.", vv::Finding::seen, {"smooth"}, ""}};
   verdict.definition.notes = {"Numbers of this case are made up."};
   verdict.definition.references = {"equilibrium", "hencky", "zhang"};
   verdict.definition.sweep = {{level_pointer, {1, 10, 20, 50}}, {scheme_pointer, {"mpm", "ugimp", "cpgimp"}}};

@@ -34,7 +34,7 @@ Json valid_case() {
     "title": "A column",
     "figure_of_paper": "Figure 1",
     "description": "A column settles under its own weight.",
-    "claims": ["It comes to rest."],
+    "claims": [{ "claim": "It comes to rest.", "finding": "depends", "gates": ["equilibrium"], "remark": "On damping." }],
     "notes": ["It is short."],
     "quick": false,
     "repeat_on_other_threads": true,
@@ -143,7 +143,7 @@ Json two_bodies() {
           "material": { "law": "zhang_elastic", "youngs_modulus": "10 MPa" }
         })"));
   text["references"] = Json::array();
-  text.erase("figures");
+  for (const char* key : {"figures", "claims"}) text.erase(key);
   text["gates"] = Json::parse(
       R"([{ "id": "completed", "metric": "completed", "at_least": 1, "basis": "requirement", "reason": "Asked for." }])");
   return text;
@@ -182,7 +182,11 @@ TEST(CaseFile, is_read_with_all_it_says) {
   EXPECT_EQ(read.title, "A column");
   EXPECT_EQ(read.description, "A column settles under its own weight.");
   EXPECT_EQ(read.figure_of_paper, "Figure 1");
-  EXPECT_EQ(read.claims, std::vector<std::string>{"It comes to rest."});
+  ASSERT_EQ(read.claims.size(), 1u);
+  EXPECT_EQ(read.claims[0].text, "It comes to rest.");
+  EXPECT_EQ(read.claims[0].finding, Finding::depends);
+  EXPECT_EQ(read.claims[0].gates, std::vector<std::string>{"equilibrium"});
+  EXPECT_EQ(read.claims[0].remark, "On damping.");
   EXPECT_EQ(read.notes, std::vector<std::string>{"It is short."});
   EXPECT_FALSE(read.quick);
   EXPECT_TRUE(read.repeat_on_other_threads);
@@ -463,6 +467,12 @@ const std::vector<Malformed>& malformed_cases() {
        "\"two words\"", Schema::refuses},
       {R"([{"op": "replace", "path": "/title", "value": ""}])", "/title", "a text that is not empty", "\"\"",
        Schema::refuses},
+      {R"([{"op": "replace", "path": "/claims/0/gates/0", "value": "equilibrum"}])", "/claims/0/gates/0",
+       "one of equilibrium, reduction, order", "\"equilibrum\"", Schema::cannot_tell},
+      {R"([{"op": "remove", "path": "/claims/0/remark"}])", "/claims/0/remark",
+       "a remark that says why the claim is not simply seen", "nothing: the key is missing", Schema::refuses},
+      {R"([{"op": "replace", "path": "/claims/0/finding", "value": "true"}])", "/claims/0/finding",
+       "one of seen, not_seen, depends", "\"true\"", Schema::refuses},
       {R"([{"op": "replace", "path": "/claims", "value": "one"}])", "/claims", "an array", "\"one\"",
        Schema::refuses},
       {R"([{"op": "replace", "path": "/notes/0", "value": 1}])", "/notes/0", "a text that is not empty", "1",
