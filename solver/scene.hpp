@@ -92,8 +92,9 @@ struct StableFraction {
 struct AtTime {
   double time;  ///< [s], > 0
 };
-/// At rest, not before gravity has settled: the grid's unbalanced force falls to `unbalanced_force_ratio`
-/// times the total weight, and the grid's kinetic energy to `kinetic_energy_ratio` times weight * cell size.
+/// At rest, not before gravity has settled: the unbalanced force that the particles feel falls to
+/// `unbalanced_force_ratio` times the total weight, and the grid's kinetic energy to `kinetic_energy_ratio`
+/// times weight * cell size.
 struct AtRest {
   double unbalanced_force_ratio;  ///< [-], > 0
   double kinetic_energy_ratio;    ///< [-], > 0

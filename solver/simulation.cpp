@@ -242,20 +242,6 @@ Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 
 bool Simulation::advance() { return engine_->advance(); }
 
-const Outcome& Simulation::run(double every, const std::function<void(const Simulation&)>& observe) {
-  observe(*this);
-  std::int64_t observed = 0;
-  while (advance()) {
-    const auto due = static_cast<std::int64_t>(time() / every * (1 + 1e-12));
-    if (due > observed) {
-      observed = due;
-      observe(*this);
-    }
-  }
-  observe(*this);
-  return outcome();
-}
-
 const Outcome& Simulation::outcome() const { return engine_->outcome(); }
 double Simulation::time() const { return engine_->outcome().time; }
 double Simulation::time_step() const { return engine_->time_step(); }

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -65,9 +64,6 @@ class Simulation {
 
   /// Advances one step. False once the run has ended; then `outcome()` says how.
   bool advance();
-
-  /// Advances to the end, calling `observe` at the start, whenever `every` [s] have passed, and at the end.
-  const Outcome& run(double every, const std::function<void(const Simulation&)>& observe);
 
   const Outcome& outcome() const;
   double time() const;

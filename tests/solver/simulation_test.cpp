@@ -134,8 +134,7 @@ TEST(Simulation, EndsWithATypedOutcomeWhenAParticleLeavesTheGrid) {
 }
 
 TEST(Simulation, EndsWithATypedOutcomeWhenADomainOutgrowsItsShapeFunction) {
-  // Hung from its base with twenty times its weight in tension, the column stretches until the domains are
-  // too long.
+  // Pulled up at 2000G from its fixed end, the column stretches until the domains are too long.
   Scene scene = column_scene(Scheme::cpgimp);
   scene.gravity.acceleration = {9.8, 0.0};
   scene.gravity.level = 2000;
@@ -241,18 +240,6 @@ TEST(Simulation, FloatFollowsDouble) {
     }
     EXPECT_LT(difference, 0.02 * largest);
     EXPECT_GT(difference, 0.0);
-  }
-}
-
-TEST(Simulation, ObservesTheStartEveryIntervalAndTheEnd) {
-  Scene scene = column_scene(Scheme::mpm);
-  scene.termination = AtTime{0.1};
-  std::vector<double> times;
-  Simulation simulation(scene);
-  simulation.run(0.025, [&](const Simulation& now) { times.push_back(now.time()); });
-  ASSERT_EQ(times.size(), 5u);
-  for (std::size_t i = 0; i < times.size(); ++i) {
-    EXPECT_NEAR(times[i], 0.025 * static_cast<double>(i), simulation.time_step());
   }
 }
 
