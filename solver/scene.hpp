@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <functional>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -51,16 +53,88 @@ struct MohrCoulomb {
   double dilation_angle;  ///< psi [rad], in [0, phi]; phi is associated flow, 0 keeps the volume
 };
 
-using Material = std::variant<LinearElastic, ZhangElastic, MohrCoulomb>;
+/// Hyperelastic, stress from the deformation gradient F: [lambda ln J I + mu (F F^T - I)] / J, J = det F. It keeps
+/// its energy over any cycle and turns with the material by itself. In one dimension lateral strain is free of
+/// stress: mu (F - 1/F) with mu = E/2.
+struct NeoHookean {
+  double youngs_modulus;  ///< of small strains [Pa], > 0
+  double poissons_ratio;  ///< of small strains [-], in [0, 0.5); no effect in one dimension
+};
+
+using Material = std::variant<LinearElastic, ZhangElastic, MohrCoulomb, NeoHookean>;
+
+/// The same stress everywhere [Pa], tension positive; in one dimension only the first is read.
+struct UniformStress {
+  double xx = 0.0, yy = 0.0, zz = 0.0, xy = 0.0;
+};
+/// The stress of a level ground at rest under full gravity, which acts along the last axis downwards:
+/// vertical -density * gravity * depth, horizontal `k0` times that.
+struct GeostaticStress {
+  double surface;  ///< height of the ground's surface [m], not below the body's upper edge
+  double k0;       ///< horizontal over vertical stress [-], >= 0
+};
+using InitialStress = std::variant<UniformStress, GeostaticStress>;
+
+/// A density that changes while the scene goes on: mass is added to (or taken from) every particle of the body
+/// at its current velocity. Constant until `start`, linear in time over `duration`, constant from then on.
+struct DensityRamp {
+  double final_density;  ///< [kg/m^3] of initial volume, > 0
+  double start;          ///< [s], >= 0
+  double duration;       ///< [s], > 0
+};
+
+/// What of a block belongs to a body: the particles whose centers lie between two radii; a disc has none inside.
+struct Ring {
+  PerAxis center{};           ///< [m]
+  double inner_radius = 0.0;  ///< [m], >= 0
+  double outer_radius = 0.0;  ///< [m], above the inner
+};
 
 /// An axis-aligned block of particles, filled regularly with particles of equal size.
 struct Body {
   std::string name;
   PerAxis lower{}, upper{};  ///< corners [m]; whole multiples of the particle spacing
+  std::optional<Ring> ring;  ///< keeps only the part of the block inside it; two dimensions only
   std::array<int, max_dimension> particles_per_cell{1, 1};  ///< per axis, >= 1
   double density = 0.0;                                     ///< initial mass density [kg/m^3], > 0
-  PerAxis velocity{};                                       ///< initial [m/s]
+  std::optional<DensityRamp> density_ramp;
+  PerAxis velocity{};  ///< initial [m/s]
+  std::optional<InitialStress> initial_stress;
   Material material = LinearElastic{0.0, 0.0};
+};
+
+/// A rigid box that moves as prescribed and acts through the grid: the nodes inside it (edges included) take
+/// its velocity, in the components it constrains. What that takes is its reaction. It is no obstacle between
+/// nodes: its edges are as sharp as the grid. At rest it is a condition on a region of the grid.
+struct RigidBody {
+  std::string name;
+  PerAxis lower{}, upper{};  ///< corners at the start [m]; may reach beyond the grid
+  std::array<bool, max_dimension> constrains{true, true};  ///< components; a smooth footing leaves its tangential one
+  PerAxis velocity{};             ///< once in full motion [m/s]
+  double angular_velocity = 0.0;  ///< of the nodes' velocity about the box's center, anticlockwise [rad/s]
+  double start = 0.0;             ///< at rest until then [s], >= 0
+  double ramp = 0.0;              ///< velocities grow linearly over this time [s], >= 0; 0 is at once
+
+  double speed_fraction(double time) const;  ///< of the full velocities at `time` [s], from 0 to 1
+  double travel_time(double time) const;     ///< integral of `speed_fraction` from 0 to `time` [s]
+};
+
+/// A traction on part of one edge of a block, carried by its outermost row of particles for good.
+struct SurfaceLoad {
+  std::string body;
+  int axis = 0, side = 0;        ///< which edge: normal axis, 0 lower or 1 upper
+  double begin = 0.0, end = 0.0; ///< which part of it, along the other axis at the start [m]; not read in 1D
+  PerAxis traction{};            ///< force per initial area [Pa]
+  double ramp = 0.0;             ///< grows linearly over this time [s], >= 0; 0 is at once
+};
+
+/// A motion that is imposed by an initial velocity and a body force, so that its exact course is known.
+struct DrivenMotion {
+  /// Velocity [m/s] at an initial place [m] and time [s]. Read once per particle, at minus half a time step:
+  /// the explicit step is a leapfrog whose velocities live halfway between the steps.
+  std::function<PerAxis(const PerAxis& initial_place, double time)> velocity;
+  /// Force per mass [m/s^2] at an initial place and time; read at the beginning of each step.
+  std::function<PerAxis(const PerAxis& initial_place, double time)> body_force;
 };
 
 struct StepLoading {};  ///< full gravity from the first step on
@@ -116,7 +190,11 @@ struct Scene {
   std::array<std::array<Condition, 2>, max_dimension> edges{};  ///< [axis][0 lower, 1 upper]
 
   std::vector<Body> bodies;
+  std::vector<RigidBody> rigid_bodies;
+  std::vector<SurfaceLoad> surface_loads;
+  std::optional<DrivenMotion> driven_motion;
   Gravity gravity;
+  bool sums_strain = false;  ///< whether particles keep the sum of their strain increments, for fields
   std::variant<GivenTimeStep, StableFraction> time_step = StableFraction{0.2};
   std::variant<AtTime, AtRest> termination = AtTime{1.0};
 };
