@@ -70,25 +70,46 @@ struct SweepAxis {
   std::vector<Json> values;
 };
 
-/// A history probe: the body's particle nearest to `at` (initial place), every `every` seconds.
+/// What a history probe looks at.
+enum class ProbeTarget {
+  particle,    ///< the particle nearest to `at` (initial place): displacement, velocity, stress
+  rigid_body,  ///< the rigid body named `of`: displacement; reaction, the mean since the last sample
+  body,        ///< all particles of the body named `of`: displacement and velocity (mass weighted means), weight
+  everything,  ///< all particles: momentum, kinetic_energy, strain_energy
+};
+
+/// A history probe: one number every `every` seconds.
 struct HistoryProbe {
   std::string id;
-  std::string quantity;  ///< displacement, velocity or stress
-  PerAxis at{};          ///< initial place [m]
-  double every = 0.0;    ///< sampling interval [s]
+  std::string quantity;   ///< see `target`
+  std::string component;  ///< x or y of a vector, xx, yy, zz or xy of a stress, empty of an energy and of a weight
+  ProbeTarget target = ProbeTarget::particle;
+  PerAxis at{};        ///< of a particle: initial place [m]
+  std::string of;      ///< of a body or rigid body: its name
+  double every = 0.0;  ///< sampling interval [s]
+};
+
+/// A moment at which the state of every particle is kept.
+struct SnapshotRequest {
+  enum class When { time, passing, end };
+  When when = When::end;
+  double time = 0.0;   ///< the first step that ends at or after it [s]
+  std::string probe;   ///< passing: id of a displacement probe ...
+  double value = 0.0;  ///< ... and the value it reaches or crosses for the first time at one of its samples [m]
 };
 
 /// A picture the report draws from the verdict of the case.
 struct FigureRequest {
   std::string id;
-  std::string kind;      ///< profiles, convergence, bars, history
+  std::string kind;      ///< profiles, convergence, bars, history, curves, fields
   std::string caption;
   std::string panels;    ///< JSON pointer of the swept parameter that separates panels; may be empty
   std::string series;    ///< JSON pointer of the swept parameter that separates curves; may be empty
-  std::string quantity;  ///< profiles: stress, displacement or stress_error; history: probe id
+  std::string quantity;  ///< profiles: stress, displacement or stress_error; history: probe id; curves: name of a
+                         ///< curve; fields: a name in `field_catalogue()` of vv/field_map.hpp
   std::vector<std::string> metrics;     ///< convergence, bars
   std::string over;                     ///< convergence: refined parameter
-  std::vector<std::string> references;  ///< profiles: names of reference solutions drawn beside the runs
+  std::vector<std::string> references;  ///< profiles, curves: names of reference solutions drawn beside the runs
   std::vector<Selector> where;
 };
 
@@ -111,6 +132,7 @@ struct Case {
   std::vector<SweepAxis> sweep;
   std::vector<RunRequest> runs;
   std::vector<HistoryProbe> probes;
+  std::vector<SnapshotRequest> snapshots;
   std::vector<Gate> gates;
   std::vector<FigureRequest> figures;
   std::filesystem::path file;

@@ -32,6 +32,14 @@ struct History {
   std::vector<double> value;  ///< SI unit of the quantity
 };
 
+/// Every particle at one moment of a run. Values travel through JSON rounded to nine significant digits: enough
+/// for pictures and for judging fields, half the size.
+struct Snapshot {
+  std::string moment;  ///< for a person: "t = 0.1 s", "footing = -5 mm", "end"
+  double time = 0.0;   ///< [s]
+  ParticleFields fields;
+};
+
 /// What a run cost: a noisy measure and a noise-free one.
 struct Cost {
   double wall_seconds = 0.0;
@@ -58,6 +66,7 @@ struct Record {
   std::string repeat_digest;  ///< the same of the repeat on another number of threads; empty without one
   Profile profile;
   std::vector<History> histories;
+  std::vector<Snapshot> snapshots;  ///< in the order they were taken
   Cost cost;
 
   /// The run ended where it was meant to: its final state can be judged.
