@@ -1,0 +1,218 @@
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <mutex>
+#include <numbers>
+#include <optional>
+#include <tuple>
+
+#include "reference/bearing_capacity.hpp"
+#include "reference/elastic_strip.hpp"
+#include "vv/judging.hpp"
+
+namespace mpm::vv {
+namespace {
+
+/// Only the last part of the settlement is judged as the state reached: its share of the whole.
+constexpr double judged_share = 0.2;
+
+/// A rigid strip pressed down on the surface of one block of ground.
+struct Footing {
+  const RigidBody& strip;
+  const Body& ground;
+  bool half;         ///< only the half at x >= its axis, the grid's lower edge in x, is modelled
+  double width;      ///< in the model [m]
+  double surcharge;  ///< on the surface beside it [Pa]
+  double weight;     ///< unit weight of the ground [N/m^3]
+
+  double full_width() const { return half ? 2 * width : width; }
+  reference::Roughness roughness() const {
+    return strip.constrains[0] ? reference::Roughness::rough : reference::Roughness::smooth;
+  }
+};
+
+Footing footing_of(const Scene& scene) {
+  const RigidBody& strip = scene.rigid_bodies.front();
+  const Body& ground = scene.bodies.front();
+  double surcharge = 0.0;
+  for (const SurfaceLoad& load : scene.surface_loads) surcharge -= load.traction[1];
+  const bool half = strip.lower[0] <= scene.grid_lower[0] && scene.edges[0][0] == Condition::roller;
+  const double begin = std::max(strip.lower[0], scene.grid_lower[0]);
+  return {strip,     ground,
+          half,      strip.upper[0] - begin,
+          surcharge, -ground.density * scene.gravity.acceleration[1] * scene.gravity.level};
+}
+
+std::string why_no_footing(const Scene& scene) {
+  if (scene.dimension != 2) return "two dimensions";
+  if (scene.bodies.size() != 1 || scene.bodies.front().ring) return "a single block of ground";
+  if (scene.rigid_bodies.size() != 1) return "a single rigid body";
+  const RigidBody& strip = scene.rigid_bodies.front();
+  if (strip.velocity[0] != 0.0 || !(strip.velocity[1] < 0.0) || strip.angular_velocity != 0.0)
+    return "a rigid body that moves downwards only";
+  if (!strip.constrains[1]) return "a rigid body that constrains its vertical motion";
+  const Body& ground = scene.bodies.front();
+  if (std::abs(strip.lower[1] - ground.upper[1]) > 1e-6 * scene.cell_size)
+    return "a rigid body that starts on the ground's surface";
+  if (ground.lower[1] != scene.grid_lower[1] || scene.edges[1][0] != Condition::fixed)
+    return "ground that stands on a fixed y_lower edge";
+  if (strip.upper[0] >= ground.upper[0]) return "ground that reaches beyond the strip";
+  for (const SurfaceLoad& load : scene.surface_loads) {
+    if (load.axis != 1 || load.side != 1 || load.traction[0] != 0.0)
+      return "no surface load but a pressure on the surface";
+  }
+  return "";
+}
+
+std::string why_no_limit_load(const Scene& scene) {
+  const Footing footing = footing_of(scene);
+  const auto* soil = std::get_if<MohrCoulomb>(&footing.ground.material);
+  if (!soil) return "ground of Mohr-Coulomb's law";
+  if (footing.weight > 0.0 && (soil->cohesion > 0.0 || footing.surcharge > 0.0))
+    return "either weight or strength without weight, since only one term at a time is exact";
+  if (soil->friction_angle > 0.0 && soil->cohesion == 0.0 && footing.weight == 0.0 &&
+      footing.surcharge == 0.0)
+    return "something that gives the ground strength: cohesion, surcharge or weight";
+  return "";
+}
+
+std::string why_no_stiffness(const Scene& scene) {
+  const Footing footing = footing_of(scene);
+  if (!std::holds_alternative<LinearElastic>(footing.ground.material)) return "linear elastic ground";
+  if (!footing.half) return "a half model, its axis a roller at the grid's lower edge";
+  if (scene.edges[0][1] != Condition::roller || footing.ground.upper[0] != scene.grid_upper[0])
+    return "ground that reaches to a roller on its far side";
+  if (footing.weight != 0.0 || footing.surcharge != 0.0) return "ground without weight or surcharge";
+  return "";
+}
+
+std::string why_unsuited_to_footings(const std::string& reference, const Scene& scene) {
+  const std::string missing = why_no_footing(scene);
+  if (!missing.empty()) return missing;
+  return reference == "limit_analysis" ? why_no_limit_load(scene) : why_no_stiffness(scene);
+}
+
+/// The mean pressure at which rigid, perfectly plastic ground with associated flow fails [Pa].
+double limit_pressure(const Footing& footing) {
+  const auto& soil = std::get<MohrCoulomb>(footing.ground.material);
+  const double phi = soil.friction_angle;
+  if (footing.weight > 0.0) {
+    return footing.weight * footing.full_width() / 2 * reference::exact_ngamma(phi, footing.roughness());
+  }
+  return soil.cohesion * reference::exact_nc(phi) + footing.surcharge * reference::exact_nq(phi);
+}
+
+/// Pressure below the strip over its settlement, from the probe that records its reaction.
+struct LoadCurve {
+  Values settlement;  ///< [m]
+  Values pressure;    ///< [Pa]
+};
+
+std::optional<LoadCurve> load_curve_of(const Judging& judging, const Footing& footing) {
+  for (std::size_t i = 0; i < judging.definition.probes.size(); ++i) {
+    const HistoryProbe& probe = judging.definition.probes[i];
+    if (probe.quantity != "reaction" || probe.of != footing.strip.name || probe.component != "y") continue;
+    const History& history = judging.record.histories.at(i);
+    LoadCurve curve;
+    // A sample is the mean since the one before: it belongs to the settlement halfway.
+    for (std::size_t k = 1; k < history.time.size(); ++k) {
+      const double middle = (history.time[k - 1] + history.time[k]) / 2;
+      curve.settlement.push_back(-footing.strip.velocity[1] * footing.strip.travel_time(middle));
+      curve.pressure.push_back(history.value[k] / footing.width);
+    }
+    if (!curve.pressure.empty()) return curve;
+  }
+  return std::nullopt;
+}
+
+/// The samples of the last part of the settlement.
+Values judged_part(const LoadCurve& curve, const Values& values) {
+  Values part;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (curve.settlement[k] >= (1 - judged_share) * curve.settlement.back()) part.push_back(values[k]);
+  }
+  return part;
+}
+
+double mean_of(const Values& values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value;
+  return sum / static_cast<double>(values.size());
+}
+
+void judge_by_limit_load(Judging& judging, const Footing& footing, const LoadCurve& curve) {
+  const double exact = limit_pressure(footing);
+  const Values reached = judged_part(curve, curve.pressure);
+  const auto [least, most] = std::minmax_element(reached.begin(), reached.end());
+  const double mean = mean_of(reached);
+  judging.set("limit_analysis.pressure", mean);
+  judging.set("limit_analysis.overshoot", mean / exact - 1);
+  judging.set("limit_analysis.shortfall", 1 - mean / exact);
+  judging.set("limit_analysis.peak_overshoot",
+              *std::max_element(curve.pressure.begin(), curve.pressure.end()) / exact - 1);
+  judging.set("limit_analysis.spread", (*most - *least) / mean);
+  judging.result.curves.push_back(
+      {"pressure", "limit_analysis", {0.0, curve.settlement.back()}, {exact, exact}, "settlement"});
+}
+
+/// Solved once for each geometry: a sweep over schemes asks for the same stiffness again and again.
+reference::SecantStiffness stiffness_of(const reference::ElasticStrip& strip) {
+  static std::mutex mutex;
+  static std::map<std::tuple<double, double, double, double, double, bool>, reference::SecantStiffness>
+      solved;
+  const auto key = std::tuple(strip.half_width, strip.layer_depth, strip.side_distance, strip.youngs_modulus,
+                              strip.poissons_ratio, strip.roughness == reference::Roughness::rough);
+  const std::lock_guard lock(mutex);
+  const auto known = solved.find(key);
+  if (known != solved.end()) return known->second;
+  return solved.emplace(key, reference::secant_stiffness(strip)).first->second;
+}
+
+void judge_by_stiffness(Judging& judging, const Footing& footing, const LoadCurve& curve) {
+  const auto& elastic = std::get<LinearElastic>(footing.ground.material);
+  const Body& ground = footing.ground;
+  const reference::SecantStiffness exact =
+      stiffness_of({footing.width, ground.upper[1] - ground.lower[1], ground.upper[0] - ground.lower[0],
+                    elastic.youngs_modulus, elastic.poissons_ratio, footing.roughness()});
+  const double stiffness =
+      mean_of(judged_part(curve, curve.pressure)) / mean_of(judged_part(curve, curve.settlement));
+  judging.set("elastic_strip.stiffness", std::abs(stiffness / exact.value - 1));
+  judging.set("elastic_strip.overshoot", stiffness / exact.value - 1);
+  const double deepest = curve.settlement.back();
+  judging.result.curves.push_back(
+      {"pressure", "elastic_strip", {0.0, deepest}, {0.0, exact.value * deepest}, "settlement"});
+}
+
+void judge(Judging& judging) {
+  if (!why_no_footing(judging.scene()).empty()) return;
+  const Footing footing = footing_of(judging.scene());
+  const std::optional<LoadCurve> curve = load_curve_of(judging, footing);
+  if (!curve) return;
+  judging.result.curves.push_back({"pressure", "run", curve->settlement, curve->pressure, "settlement"});
+  if (judging.asks_for("limit_analysis")) judge_by_limit_load(judging, footing, *curve);
+  if (judging.asks_for("elastic_strip")) judge_by_stiffness(judging, footing, *curve);
+}
+
+std::vector<Metric> catalogue() {
+  const std::string last = "over the last fifth of the settlement";
+  return {
+      {"limit_analysis.pressure", "Pa", "limit_analysis", "mean pressure below the strip " + last},
+      {"limit_analysis.overshoot", "-", "limit_analysis",
+       "that pressure over the exact limit pressure, minus 1"},
+      {"limit_analysis.shortfall", "-", "limit_analysis", "the same the other way round: 1 minus the ratio"},
+      {"limit_analysis.peak_overshoot", "-", "limit_analysis",
+       "largest pressure over the exact limit pressure, minus 1"},
+      {"limit_analysis.spread", "-", "limit_analysis", "range of the pressure over its mean, " + last},
+      {"elastic_strip.stiffness", "-", "elastic_strip",
+       "relative error of pressure over settlement, both means " + last},
+      {"elastic_strip.overshoot", "-", "elastic_strip", "the same with its sign: positive is too stiff"},
+  };
+}
+
+}  // namespace
+
+NormFamily footing_norms() {
+  return {{"limit_analysis", "elastic_strip"}, catalogue(), why_unsuited_to_footings, judge};
+}
+
+}  // namespace mpm::vv

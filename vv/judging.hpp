@@ -1,0 +1,59 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "vv/norms.hpp"
+
+/// What the families of norms share; nobody but vv/norms.cpp and the families includes this.
+namespace mpm::vv {
+
+using Values = std::vector<double>;
+
+/// Everything the norms of one run are computed from, and what they say.
+struct Judging {
+  const Case& definition;
+  const RunRequest& request;
+  const Record& record;
+  Judgement result;
+
+  const Scene& scene() const { return request.scene; }
+  /// Keeps a finite value only.
+  void set(const std::string& name, double value);
+  /// Whether the case wants to be judged by a reference solution.
+  bool asks_for(const std::string& reference) const;
+};
+
+/// L1 and L2 weighted, L-infinity; each relative to the same norm of the exact field.
+struct RelativeNorms {
+  double l1, l2, linf;
+};
+
+/// Of values with one weight each. An error that is not a number makes every norm so.
+RelativeNorms relative_norms(const Values& found, const Values& exact, const Values& weight);
+
+void set_norms(Judging& judging, const std::string& name, const RelativeNorms& norms);
+
+/// The three entries of a catalogue for the norms of one field.
+void add_norms(std::vector<Metric>& catalogue, const std::string& field, const std::string& reference,
+               const std::string& what);
+
+/// The axis along which gravity acts and columns stand: the last one.
+std::size_t axis_of(const Scene& scene);
+
+/// A family of norms: the reference solutions it knows, what it measures, and how.
+struct NormFamily {
+  std::vector<std::string> references;
+  std::vector<Metric> metrics;
+  /// Empty, or what the reference solution needs that the scene lacks.
+  std::string (*why_unsuited)(const std::string& reference, const Scene& scene);
+  /// Judges a run that completed.
+  void (*judge)(Judging& judging);
+};
+
+NormFamily column_norms();        ///< columns settled under their own weight
+NormFamily footing_norms();       ///< rigid strips pressed into the ground
+NormFamily motion_norms();        ///< motions whose course is known
+NormFamily conservation_norms();  ///< what no motion may change; needs no reference solution
+
+}  // namespace mpm::vv
