@@ -335,6 +335,10 @@ void require_nodes(const Scene& scene, const RigidBody& body, const std::string&
                    whole_number_tolerance);
     require(first <= last, at_index(place + "/upper", axis), "a rigid body that holds a node of the grid",
             text_of(body.lower[axis], "m") + " to " + text_of(body.upper[axis], "m") + ", between two nodes");
+    require(
+        body.velocity[axis] == 0.0 || body.upper[axis] - body.lower[axis] >= h * (1 - whole_number_tolerance),
+        at_index(place + "/upper", axis), "a body at least a cell thick along its motion, " + text_of(h, "m"),
+        text_of(body.upper[axis] - body.lower[axis], "m"));
   }
 }
 

@@ -107,9 +107,11 @@ struct Body {
   double density_at(double time) const;  ///< of initial volume, at `time` [s] [kg/m^3]
 };
 
-/// A rigid box that moves as prescribed and acts through the grid: the nodes inside it (edges included) take
-/// its velocity, in the components it constrains. What that takes is its reaction. It is no obstacle between
-/// nodes: its edges are as sharp as the grid. At rest it is a condition on a region of the grid.
+/// A rigid box that moves as prescribed and acts through the grid: what it holds takes its velocity, in the
+/// components it constrains, and what that takes is its reaction. Across its motion its extent is as sharp as
+/// the grid: the nodes inside it, edges included. At rest it is a condition on a region of the grid. A body
+/// that moves along one axis has its two faces normal to that axis where they are, also between nodes; one
+/// that turns or moves along both is as sharp as the grid everywhere.
 struct RigidBody {
   std::string name;
   PerAxis lower{}, upper{};  ///< corners at the start [m]; may reach beyond the grid

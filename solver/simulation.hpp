@@ -50,7 +50,7 @@ struct ParticleFields {
       strain;  ///< sum of the increments, shape of `stress` [-]; empty unless the scene sums strain
   std::vector<double> deformation_gradient;  ///< [particle * dimension^2 + row * dimension + column] [-];
                                              ///< empty unless a neo-Hookean body in 2D needs it
-  std::vector<std::size_t> body;  ///< [particle] index into Scene::bodies
+  std::vector<std::size_t> body;             ///< [particle] index into Scene::bodies
 };
 
 /// What a rigid body has done so far.

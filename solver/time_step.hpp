@@ -72,18 +72,19 @@ class TimeStepper {
   void move_grid(const Vector<Dim, Real>& gravity) {
     add_gravity<Dim, Real>(grid_, gravity);
     edges_.apply(grid_);
+    rigid_bodies_.take_up(grid_, empty_mass_);
     if (damping_ > 0) {
       accelerate<true>(grid_, time_step_, damping_, empty_mass_);
     } else {
       accelerate<false>(grid_, time_step_, damping_, empty_mass_);
     }
-    rigid_bodies_.accelerate(grid_, empty_mass_);
+    rigid_bodies_.set_motion(grid_, empty_mass_);
   }
 
   void update_stress_from_momentum() {
     edges_.apply(grid_);
     set_velocity(grid_, empty_mass_);
-    rigid_bodies_.set_velocity(grid_);
+    rigid_bodies_.set_motion(grid_, empty_mass_);
     update_stress_from_velocity();
   }
 

@@ -55,6 +55,20 @@ Scene block() {
   return scene;
 }
 
+/// A block with a rigid plate on it, on a fixed base.
+Scene pressed_block() {
+  Scene scene = block();
+  scene.edges = {{{Condition::roller, Condition::free}, {Condition::fixed, Condition::free}}};
+  RigidBody plate;
+  plate.name = "plate";
+  plate.lower = {0.2, 1.0};
+  plate.upper = {0.4, 1.04};
+  plate.velocity = {0.0, -0.1};
+  scene.rigid_bodies = {plate};
+  scene.surface_loads = {{"column", 1, 1, 0.5, 1.0, {0.0, -10.0}, 0.0}};
+  return scene;
+}
+
 struct Impossible {
   std::string place;
   std::string expected;  ///< contained in what the error says was expected
@@ -245,6 +259,104 @@ const std::vector<Impossible>& impossible_scenes() {
        [](Scene& s) { s.gravity.level = 0.0; }},
       {"/termination/type", "at_time where gravity is zero", "at_rest",
        [](Scene& s) { s.gravity.acceleration = {0.0}; }},
+
+      {"/bodies/0/ring", "no ring in one dimension", "one",
+       [](Scene& s) { body(s).ring = Ring{{0.5, 0.5}, 0.0, 0.5}; }},
+      {"/bodies/0/ring/inner_radius", "zero or above", "-0.1 m",
+       [](Scene& s) { body(s).ring = Ring{{0.5, 0.5}, -0.1, 0.5}; }, block()},
+      {"/bodies/0/ring/outer_radius", "above the inner one, 0.5 m", "0.5 m",
+       [](Scene& s) { body(s).ring = Ring{{0.5, 0.5}, 0.5, 0.5}; }, block()},
+      {"/bodies/0/ring/center/1", "a finite length", "nan m",
+       [](Scene& s) { body(s).ring = Ring{{0.5, not_a_number}, 0.0, 0.5}; }, block()},
+      {"/bodies/0/ring", "at least one particle center", "hold none of the block's",
+       [](Scene& s) { body(s).ring = Ring{{5.0, 5.0}, 0.0, 0.5}; }, block()},
+      {"/bodies/0/density_ramp/final_density", "above zero", "0 kg/m^3",
+       [](Scene& s) { body(s).density_ramp = DensityRamp{0.0, 0.0, 1.0}; }},
+      {"/bodies/0/density_ramp/start", "zero or above", "-1 s",
+       [](Scene& s) { body(s).density_ramp = DensityRamp{2000.0, -1.0, 1.0}; }},
+      {"/bodies/0/density_ramp/duration", "above zero", "0 s",
+       [](Scene& s) { body(s).density_ramp = DensityRamp{2000.0, 0.0, 0.0}; }},
+      {"/bodies/0/initial_stress/surface", "not below the body's upper edge, 1 m", "0.9 m",
+       [](Scene& s) { body(s).initial_stress = GeostaticStress{0.9, 0.5}; }, block()},
+      {"/bodies/0/initial_stress/k0", "zero or above", "-0.5",
+       [](Scene& s) { body(s).initial_stress = GeostaticStress{1.0, -0.5}; }, block()},
+      {"/bodies/0/initial_stress/type", "a uniform stress where gravity is not along the last axis",
+       "geostatic",
+       [](Scene& s) {
+         s.gravity.acceleration = {1.0, -9.8};
+         body(s).initial_stress = GeostaticStress{1.0, 0.5};
+       },
+       block()},
+      {"/bodies/0/initial_stress/xy", "a finite pressure", "inf Pa",
+       [](Scene& s) {
+         body(s).initial_stress = UniformStress{0.0, 0.0, 0.0, infinity};
+       },
+       block()},
+      {"/bodies/0/initial_stress", "no initial stress with a law whose stress follows from the deformation",
+       "one",
+       [](Scene& s) {
+         body(s).material = NeoHookean{1e7, 0.3};
+         body(s).initial_stress = UniformStress{1.0};
+       }},
+      {"/bodies/0/material/poissons_ratio", "0 to below 0.5", "0.5",
+       [](Scene& s) {
+         body(s).material = NeoHookean{1e7, 0.5};
+       }},
+
+      {"/rigid_bodies/0/name", "a name", "an empty text",
+       [](Scene& s) { s.rigid_bodies[0].name.clear(); }, pressed_block()},
+      {"/rigid_bodies/0/name", "a name no other body has", "\"column\"",
+       [](Scene& s) { s.rigid_bodies[0].name = "column"; }, pressed_block()},
+      {"/rigid_bodies/1/name", "a name no other body has", "\"plate\"",
+       [](Scene& s) { s.rigid_bodies.push_back(s.rigid_bodies[0]); }, pressed_block()},
+      {"/rigid_bodies/0/upper/0", "above the lower corner's, 0.2 m", "0.2 m",
+       [](Scene& s) { s.rigid_bodies[0].upper[0] = 0.2; }, pressed_block()},
+      {"/rigid_bodies/0/upper/0", "holds a node of the grid", "between two nodes",
+       [](Scene& s) {
+         s.rigid_bodies[0].lower[0] = 0.205;
+         s.rigid_bodies[0].upper[0] = 0.215;
+       },
+       pressed_block()},
+      {"/rigid_bodies/0/upper/1", "at least a cell thick along its motion, 0.02 m", "0.01 m",
+       [](Scene& s) { s.rigid_bodies[0].upper[1] = 1.01; }, pressed_block()},
+      {"/rigid_bodies/0/constrains", "at least one component", "none",
+       [](Scene& s) {
+         s.rigid_bodies[0].constrains = {false, false};
+       },
+       pressed_block()},
+      {"/rigid_bodies/0/velocity/1", "a finite velocity", "nan m/s",
+       [](Scene& s) { s.rigid_bodies[0].velocity[1] = not_a_number; }, pressed_block()},
+      {"/rigid_bodies/0/velocity/0", "no motion along an axis in which an edge", "1 m/s",
+       [](Scene& s) {
+         s.rigid_bodies[0].lower[0] = 0.0;
+         s.rigid_bodies[0].velocity = {1.0, 0.0};
+       },
+       pressed_block()},
+      {"/rigid_bodies/0/angular_velocity", "a finite rate", "inf rad/s",
+       [](Scene& s) { s.rigid_bodies[0].angular_velocity = infinity; }, pressed_block()},
+      {"/rigid_bodies/0/start", "zero or above", "-1 s", [](Scene& s) { s.rigid_bodies[0].start = -1.0; },
+       pressed_block()},
+      {"/rigid_bodies/0/ramp", "zero or above", "nan s",
+       [](Scene& s) { s.rigid_bodies[0].ramp = not_a_number; }, pressed_block()},
+
+      {"/surface_loads/0/body", "the name of a body", "\"wall\"",
+       [](Scene& s) { s.surface_loads[0].body = "wall"; }, pressed_block()},
+      {"/surface_loads/0/body", "a whole block", "a ring",
+       [](Scene& s) { body(s).ring = Ring{{0.5, 0.5}, 0.0, 0.5}; }, pressed_block()},
+      {"/surface_loads/0/edge", "an edge of the body", "axis 2, side 1",
+       [](Scene& s) { s.surface_loads[0].axis = 2; }, pressed_block()},
+      {"/surface_loads/0/traction/1", "a finite pressure", "inf Pa",
+       [](Scene& s) { s.surface_loads[0].traction[1] = infinity; }, pressed_block()},
+      {"/surface_loads/0/ramp", "zero or above", "-1 s", [](Scene& s) { s.surface_loads[0].ramp = -1.0; },
+       pressed_block()},
+      {"/surface_loads/0/to", "a stretch of at least one particle, 0.02 m", "1.5 m to 2 m",
+       [](Scene& s) {
+         s.surface_loads[0].begin = 1.5;
+         s.surface_loads[0].end = 2.0;
+       },
+       pressed_block()},
+      {"/driven_motion", "both a velocity and a body force", "one of them missing",
+       [](Scene& s) { s.driven_motion = DrivenMotion{}; }},
   };
   return all;
 }
@@ -267,6 +379,7 @@ TEST(Check, refuses_what_cannot_be_simulated) {
 TEST(Check, accepts_what_can_be_simulated) {
   EXPECT_NO_THROW(check(column()));
   EXPECT_NO_THROW(check(two_columns())) << "bodies may touch";
+  EXPECT_NO_THROW(check(pressed_block())) << "a plate may touch";
 }
 
 TEST(Check, accepts_limits_that_belong_to_the_range) {
