@@ -291,6 +291,9 @@ std::string column_title(const std::string& metric) {
   return escaped(rest) + suffix + unit;
 }
 
+// A longer table of runs is folded away: it is looked up, not read.
+constexpr std::size_t longest_open_table = 12;
+
 data metric_tables(const vv::CaseVerdict& verdict) {
   std::vector<std::string> names;
   std::map<std::string, std::vector<std::string>> tables;
@@ -316,6 +319,8 @@ data metric_tables(const vv::CaseVerdict& verdict) {
       rows << row;
     }
     table.set("rows", rows);
+    table.set("folded", flag(verdict.runs.size() > longest_open_table));
+    table.set("row_count", std::to_string(verdict.runs.size()));
     result << table;
   }
   return result;

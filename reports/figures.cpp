@@ -1304,7 +1304,7 @@ FieldPlot field_plot_of(const vv::CaseVerdict& verdict, const vv::FigureRequest&
   if (tame.empty()) tame = all;
   plot.x = view_range(tame, &vv::FieldMap::x, &vv::FieldMap::half_x);
   plot.y = view_range(tame, &vv::FieldMap::y, &vv::FieldMap::half_y);
-  plot.scale = color_scale(all, tame, *quantity);
+  plot.scale = color_scale(tame, all, *quantity);
   if (members.empty())
     plot.panels.push_back({"", std::nullopt, "No run was selected for this figure."});
   else
