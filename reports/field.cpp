@@ -25,6 +25,10 @@ constexpr double color_bar_height = bar_thickness + tick_gap + 2 * line_height +
 constexpr double edge_room = 6.0;  // right of the last frame, for half a tick label
 constexpr double note_margin = 6.0;
 constexpr double view_margin = 0.02;  // of the larger side, around what must be seen
+constexpr double overlap = 0.12;      // of a particle on every side: gaps narrower than a pixel do not show
+constexpr double readable_frame = 110.0;  // wide enough for what a field shows
+constexpr double axis_label_gap = 6.0;    // between tick labels and the label of the vertical axis
+constexpr int most_rows = 5;              // labelled ticks of the vertical axis
 constexpr int bar_slices = 256;
 
 const Color frame_color{0.45, 0.45, 0.45, 1.0};
@@ -130,8 +134,10 @@ Grid grid_of(const FieldPlot& plot, std::size_t columns) {
   grid.columns = columns;
   grid.rows = std::max<std::size_t>(1, (plot.panels.size() + columns - 1) / columns);
   const LengthUnit unit = length_unit(grid.view);
-  grid.left_room =
-      line_height + 4.0 + widest(labelled_ticks(grid.view.y, unit.factor, 4)) + outward_tick + 2.0;
+  double labels = 0.0;
+  for (int wanted = 1; wanted <= most_rows; ++wanted)
+    labels = std::max(labels, widest(labelled_ticks(grid.view.y, unit.factor, wanted)));
+  grid.left_room = line_height + axis_label_gap + labels + outward_tick + 2.0;
   const auto count = static_cast<double>(columns);
   const double free_width =
       plot.width - 2 * outer_margin - edge_room - grid.left_room - (count - 1.0) * grid.column_gap;
@@ -179,7 +185,8 @@ void draw_particles(Canvas& canvas, const Frame& frame, const vv::FieldMap& map,
     layout.not_finite += !placed || !std::isfinite(map.value[p]);
     layout.outside += placed && !seen(frame, map, p);
     if (!seen(frame, map, p)) continue;
-    const double half_x = map.half_x[p] * frame.scale, half_y = map.half_y[p] * frame.scale;
+    const double half_x = map.half_x[p] * frame.scale + overlap,
+                 half_y = map.half_y[p] * frame.scale + overlap;
     canvas.rectangle({center.x - half_x, center.y - half_y, center.x + half_x, center.y + half_y},
                      color_at(scale.map, (map.value[p] * scale.factor - scale.range.lower) / span));
     layout.points.push_back(center);
@@ -204,7 +211,7 @@ void draw_axes(Canvas& canvas, const Frame& frame, bool x_labels, bool y_labels)
       canvas.text({x, box.bottom + tick_gap + 8.5}, label,
                   text_style(Horizontal::center, Vertical::baseline));
   }
-  const int wanted = std::clamp(static_cast<int>(box.height() / 26.0), 1, 5);
+  const int wanted = std::clamp(static_cast<int>(box.height() / 26.0), 1, most_rows);
   const auto rows = labelled_ticks(frame.view.y, unit.factor, wanted);
   for (const auto& [value, label] : rows) {
     const double y = frame.at(0.0, value / unit.factor).y;
@@ -218,7 +225,7 @@ void draw_axes(Canvas& canvas, const Frame& frame, bool x_labels, bool y_labels)
   if (!y_labels) return;
   TextStyle upward = text_style(Horizontal::center, Vertical::bottom);
   upward.upward = true;
-  canvas.text({box.left - outward_tick - 2.0 - widest(rows) - 2.0, (box.top + box.bottom) / 2},
+  canvas.text({box.left - outward_tick - 2.0 - widest(rows) - axis_label_gap, (box.top + box.bottom) / 2},
               fmt::format("<i>y</i> [{}]", unit.name), upward);
 }
 
@@ -406,18 +413,19 @@ Layout::Panel draw_panel(Canvas& canvas, const Sheet& sheet, const FieldPlot& pl
 }  // namespace
 
 int best_columns(const FieldPlot& plot) {
-  std::size_t best = 1;
-  double largest = 0.0;
-  for (std::size_t columns = 1; columns <= std::min<std::size_t>(4, plot.panels.size()); ++columns) {
+  const std::size_t panels = plot.panels.size();
+  std::size_t largest = 1, flattest = 0;
+  double area = 0.0;
+  for (std::size_t columns = 1; columns <= std::min<std::size_t>(4, panels); ++columns) {
     const Grid grid = grid_of(plot, columns);
-    const double area = grid.frame_width * grid.frame_height;
-    // A tie goes to more columns: the picture is shorter.
-    if (area >= largest * 0.98) {
-      largest = std::max(area, largest);
-      best = columns;
+    if (grid.frame_width * grid.frame_height > area) {
+      area = grid.frame_width * grid.frame_height;
+      largest = columns;
     }
+    const std::size_t empty_places = grid.rows * columns - panels;
+    if (grid.frame_width >= readable_frame && empty_places <= 1) flattest = columns;
   }
-  return static_cast<int>(best);
+  return static_cast<int>(flattest > 0 ? flattest : largest);
 }
 
 Picture draw(const FieldPlot& plot, double pixels_per_point) {

@@ -39,12 +39,14 @@ struct FieldPlot {
   std::string stamp;               ///< markup, small, along the lower edge
 };
 
-/// How many columns show panels of these titles largest, when nothing else decides it.
+/// How many columns fill the page best when nothing else decides it: as many as leave the frames readable and
+/// at most one place empty, or else those that make the frames largest.
 int best_columns(const FieldPlot& plot);
 
-/// Draws every particle as the rectangle it stands for. One whose value is not finite is black; it, and one
-/// that lies outside the view, is counted in a note. In the layout the legend is the colour bar, without its
-/// labels, and a panel's annotation is the note in its frame. Throws CanvasError.
+/// Draws every particle as the rectangle it stands for, a hair larger so that no gap narrower than a pixel
+/// shows. One whose value is not finite is black; it, and one that lies outside the view, is counted in a
+/// note. In the layout the legend is the colour bar, without its labels, and a panel's annotation is the note
+/// in its frame. Throws CanvasError.
 Picture draw(const FieldPlot& plot, double pixels_per_point = 10.0 / 3.0);
 
 }  // namespace mpm::reports

@@ -296,7 +296,8 @@ std::string joined(std::string list, std::string next) {
 /// Where a run that the solver ended stopped: " at step 120, <i>t</i> = 0.5 s".
 std::string place_of_ending(const vv::Record& record) {
   if (!record.failure.empty()) return "";
-  return fmt::format(" at step {}, <i>t</i> = {:.3g} s", record.outcome.step, record.outcome.time);
+  return fmt::format(" at step {}, <i>t</i>\u00a0=\u00a0{:.3g}\u00a0s", record.outcome.step,
+                     record.outcome.time);
 }
 
 /// One note for all runs of a series that ended alike; `missing` says which runs have nothing to show.
@@ -708,6 +709,7 @@ Panel curve_panel(const std::vector<Member>& members, const vv::FigureRequest& r
 // -----------------------------------------------------------------------------------------------------
 
 constexpr double scale_percentile = 0.995;  // where a colour scale ends if a few values lie far beyond
+constexpr double far_beyond = 0.5;          // of the span between the percentiles
 constexpr double view_percentile = 0.999;   // of the places, on either side
 
 /// Markup of a field's name; it never ends in a unit.
@@ -790,7 +792,7 @@ ColorScale color_scale(const std::vector<const vv::FieldMap*>& tame,
   const auto [smallest, largest] = std::minmax_element(values.begin(), values.end());
   const double tame_least = *smallest, tame_most = *largest;
   double lower = percentile(values, 1.0 - scale_percentile), upper = percentile(values, scale_percentile);
-  const double far = 0.2 * (upper - lower);
+  const double far = far_beyond * (upper - lower);
   if (tame_most - upper <= far) upper = tame_most;
   if (lower - tame_least <= far) lower = tame_least;
   ColorScale scale = scale_between(quantity.name, lower, upper);
@@ -864,14 +866,29 @@ void set_names(FieldPlot& plot, const std::vector<Member>& members, const std::v
   plot.columns = one_run || one_moment ? best_columns(plot) : static_cast<int>(moments.size());
 }
 
+/// The part of the values drawn that the colour scale cannot tell from its ends: "0.42 %".
+std::string part_beyond_scale(const FieldPlot& plot) {
+  std::size_t beyond = 0, all = 0;
+  for (const FieldPanel& panel : plot.panels) {
+    if (!panel.map) continue;
+    for (const double value : panel.map->value) {
+      const double shown = value * plot.scale.factor;
+      beyond += shown < plot.scale.range.lower || shown > plot.scale.range.upper;
+      ++all;
+    }
+  }
+  return fmt::format("{:.2g}\u00a0%", 100.0 * static_cast<double>(beyond) / static_cast<double>(all));
+}
+
 /// What a reader of the picture must know beside it.
 void set_notes(FieldPlot& plot, const std::vector<Member>& members, const vv::CaseVerdict& verdict,
                std::size_t moments, std::size_t came_about) {
   if (plot.scale.above || plot.scale.below)
     plot.notes.push_back(
-        fmt::format("An arrow at an end of the colour scale: beyond it lie values of the run that did not "
-                    "complete, or the outermost {:.1f} % of the values; the number is the outermost of all.",
-                    100.0 * (1.0 - scale_percentile)));
+        fmt::format("The colour scale ends at percentile {:g} of the values of completed runs, or at {:g}, "
+                    "where values far "
+                    "beyond would stretch it: {} of what is drawn, the outermost as given beside the arrow.",
+                    100.0 * scale_percentile, 100.0 * (1.0 - scale_percentile), part_beyond_scale(plot)));
   for (std::size_t m = 0; m < members.size(); ++m) {
     const vv::Record& record = members[m].run->record;
     const auto first = plot.panels.begin() + static_cast<std::ptrdiff_t>(m * moments);

@@ -57,7 +57,7 @@ Plot plot_of(const vv::CaseVerdict& verdict, const vv::FigureRequest& request);
 ///   flown so far that all others would shrink by a third or more, the outermost 0.1 % are left out and
 ///   counted.
 /// - The colours cover all their values, or all but the outermost 0.5 % at an end beyond which a few lie
-///   farther than a fifth of the rest's span: then the scale says so and names the outermost value. Values of
+///   farther than half of the rest's span: then the scale says so and names the outermost value. Values of
 ///   both signs, the shear stress and the horizontal displacement have a scale with zero in its middle.
 /// - A run that did not complete, or has no such snapshot, has its reason in the panel's place.
 ///
