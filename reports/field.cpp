@@ -28,7 +28,6 @@ constexpr double view_margin = 0.02;  // of the larger side, around what must be
 constexpr double overlap = 0.12;      // of a particle on every side: gaps narrower than a pixel do not show
 constexpr double readable_frame = 110.0;  // wide enough for what a field shows
 constexpr double axis_label_gap = 6.0;    // between tick labels and the label of the vertical axis
-constexpr int most_rows = 5;              // labelled ticks of the vertical axis
 constexpr int bar_slices = 256;
 
 const Color frame_color{0.45, 0.45, 0.45, 1.0};
@@ -90,6 +89,7 @@ struct Grid {
   std::size_t columns = 1, rows = 1;
   double frame_width = 0.0, frame_height = 0.0;
   double column_gap = widest_tick_label;
+  int row_ticks = 3;                  ///< labels wanted along the vertical axis
   double left_room = 0.0;             ///< for the ticks and the label of the vertical axis
   std::vector<double> title_heights;  ///< a row
   double block_width() const {
@@ -134,14 +134,15 @@ Grid grid_of(const FieldPlot& plot, std::size_t columns) {
   grid.columns = columns;
   grid.rows = std::max<std::size_t>(1, (plot.panels.size() + columns - 1) / columns);
   const LengthUnit unit = length_unit(grid.view);
-  double labels = 0.0;
-  for (int wanted = 1; wanted <= most_rows; ++wanted)
-    labels = std::max(labels, widest(labelled_ticks(grid.view.y, unit.factor, wanted)));
-  grid.left_room = line_height + axis_label_gap + labels + outward_tick + 2.0;
   const auto count = static_cast<double>(columns);
+  const double tallest = tallest_frames / static_cast<double>(grid.rows);
+  // The labels take room from the frames whose height decides how many there are: a guess of it will do.
+  const double height_guess = std::min(tallest, plot.width / (count + 0.3) * grid.view.aspect());
+  grid.row_ticks = std::clamp(static_cast<int>(height_guess / 26.0), 1, 5);
+  grid.left_room = line_height + axis_label_gap + outward_tick + 2.0 +
+                   widest(labelled_ticks(grid.view.y, unit.factor, grid.row_ticks));
   const double free_width =
       plot.width - 2 * outer_margin - edge_room - grid.left_room - (count - 1.0) * grid.column_gap;
-  const double tallest = tallest_frames / static_cast<double>(grid.rows);
   grid.frame_width = std::max(least_frame, std::min(free_width / count, tallest / grid.view.aspect()));
   grid.frame_height = std::max(least_frame, std::min(tallest, grid.frame_width * grid.view.aspect()));
   const double scale = std::min(grid.frame_width / grid.view.width(), grid.frame_height / grid.view.height());
@@ -201,7 +202,7 @@ void draw_box(Canvas& canvas, const Rectangle& r, const Color& color) {
   canvas.rule({r.right, r.top}, {r.right, r.bottom}, axis_width, color);
 }
 
-void draw_axes(Canvas& canvas, const Frame& frame, bool x_labels, bool y_labels) {
+void draw_axes(Canvas& canvas, const Frame& frame, int row_ticks, bool x_labels, bool y_labels) {
   const LengthUnit unit = length_unit(frame.view);
   const Rectangle& box = frame.box;
   for (const auto& [value, label] : ticks_along(frame.view.x, unit.factor, box.width())) {
@@ -211,8 +212,7 @@ void draw_axes(Canvas& canvas, const Frame& frame, bool x_labels, bool y_labels)
       canvas.text({x, box.bottom + tick_gap + 8.5}, label,
                   text_style(Horizontal::center, Vertical::baseline));
   }
-  const int wanted = std::clamp(static_cast<int>(box.height() / 26.0), 1, most_rows);
-  const auto rows = labelled_ticks(frame.view.y, unit.factor, wanted);
+  const auto rows = labelled_ticks(frame.view.y, unit.factor, row_ticks);
   for (const auto& [value, label] : rows) {
     const double y = frame.at(0.0, value / unit.factor).y;
     canvas.rule({box.left, y}, {box.left - outward_tick, y}, axis_width, frame_color);
@@ -406,7 +406,8 @@ Layout::Panel draw_panel(Canvas& canvas, const Sheet& sheet, const FieldPlot& pl
   else
     write_in_frame(canvas, frame.box, sheet.frame_notes[number], layout);
   draw_box(canvas, frame.box, frame_color);
-  draw_axes(canvas, frame, number + grid.columns >= plot.panels.size(), number % grid.columns == 0);
+  draw_axes(canvas, frame, grid.row_ticks, number + grid.columns >= plot.panels.size(),
+            number % grid.columns == 0);
   return layout;
 }
 

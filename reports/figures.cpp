@@ -866,8 +866,8 @@ void set_names(FieldPlot& plot, const std::vector<Member>& members, const std::v
   plot.columns = one_run || one_moment ? best_columns(plot) : static_cast<int>(moments.size());
 }
 
-/// The part of the values drawn that the colour scale cannot tell from its ends: "0.42 %".
-std::string part_beyond_scale(const FieldPlot& plot) {
+/// How many of the values drawn the colour scale cannot tell from its ends: "3 of 1800".
+std::string beyond_scale(const FieldPlot& plot) {
   std::size_t beyond = 0, all = 0;
   for (const FieldPanel& panel : plot.panels) {
     if (!panel.map) continue;
@@ -877,18 +877,17 @@ std::string part_beyond_scale(const FieldPlot& plot) {
       ++all;
     }
   }
-  return fmt::format("{:.2g}\u00a0%", 100.0 * static_cast<double>(beyond) / static_cast<double>(all));
+  return fmt::format("{} of {}", beyond, all);
 }
 
 /// What a reader of the picture must know beside it.
 void set_notes(FieldPlot& plot, const std::vector<Member>& members, const vv::CaseVerdict& verdict,
                std::size_t moments, std::size_t came_about) {
   if (plot.scale.above || plot.scale.below)
-    plot.notes.push_back(
-        fmt::format("The colour scale ends at percentile {:g} of the values of completed runs, or at {:g}, "
-                    "where values far "
-                    "beyond would stretch it: {} of what is drawn, the outermost as given beside the arrow.",
-                    100.0 * scale_percentile, 100.0 * (1.0 - scale_percentile), part_beyond_scale(plot)));
+    plot.notes.push_back(fmt::format(
+        "The colour scale covers at least percentiles {:g} to {:g} of the values of completed runs. "
+        "Beyond it lie {} values drawn; the outermost stands beside the arrow.",
+        100.0 * (1.0 - scale_percentile), 100.0 * scale_percentile, beyond_scale(plot)));
   for (std::size_t m = 0; m < members.size(); ++m) {
     const vv::Record& record = members[m].run->record;
     const auto first = plot.panels.begin() + static_cast<std::ptrdiff_t>(m * moments);

@@ -323,7 +323,8 @@ TEST(Fields, AFewWildValuesAreToldNotScaledTo) {
   EXPECT_GE(after.scale.range.upper, before.scale.range.upper * 0.4);
   ASSERT_TRUE(after.scale.above);
   EXPECT_DOUBLE_EQ(*after.scale.above, 7e4);
-  EXPECT_TRUE(any_mentions(after.notes, "ends at percentile 99.5"));
+  EXPECT_TRUE(any_mentions(after.notes, "percentiles 0.5 to 99.5"));
+  EXPECT_TRUE(any_mentions(after.notes, " of 16200 values drawn"));
   EXPECT_FALSE(before.scale.above);
   EXPECT_TRUE(before.notes.empty());
 }
