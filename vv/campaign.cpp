@@ -126,7 +126,8 @@ struct Job {
         run(index),
         file(std::move(stored_in)),
         pool_size(threads),
-        estimate(estimated_particle_steps(of.runs[index].scene)) {}
+        estimate(estimated_particle_steps(of.runs[index].scene) *
+                 static_cast<double>(1 + of.metamorphoses.size())) {}
 
   const RunRequest& request() const { return definition->runs[run]; }
 

@@ -14,6 +14,7 @@
 #include "vv/case_schema.hpp"
 #include "vv/field_map.hpp"
 #include "vv/json_reader.hpp"
+#include "vv/metamorphic.hpp"
 #include "vv/norms.hpp"
 
 namespace mpm::vv {
@@ -745,6 +746,10 @@ std::string read_metric(const JsonPlace& place, const Case& read) {
                      (read.references.empty() ? "none" : listed(read.references)) + ")",
                  ", which needs " + metric.reference);
   }
+  if (name.starts_with(metamorphic_prefix) &&
+      !contains(read.metamorphoses, name.substr(metamorphic_prefix.size()))) {
+    place.refuse("a metric that the case measures", ", which needs that name among metamorphoses");
+  }
   if (name == "bits_differ" && !read.repeat_on_other_threads) {
     place.refuse("a metric that the case measures", ", which needs repeat_on_other_threads to be true");
   }
@@ -1232,11 +1237,28 @@ void require_suited(const JsonPlace& place, const Case& read) {
   }
 }
 
+/// Other descriptions of the scene, each of which every run must have.
+std::vector<std::string> read_metamorphoses(const JsonPlace& place, const Case& read) {
+  if (!place.present()) return {};
+  std::vector<std::string> known;
+  for (const Metamorphosis& metamorphosis : metamorphosis_catalogue()) known.push_back(metamorphosis.name);
+  const std::vector<std::string> names = read_names(place, known);
+  for (const JsonPlace& name : place.elements()) {
+    for (const RunRequest& run : read.runs) {
+      const std::string reason = why_not_describable(name.text(), run.scene);
+      if (reason.empty()) continue;
+      name.refuse("a metamorphosis that the scene has", ", but " + reason +
+                                                            (run.parameters.empty() ? "" : " in the run with " + name_of(run)));
+    }
+  }
+  return names;
+}
+
 /// Reads `read.text` into the rest of `read`, top to bottom: each part refers only to those before it.
 void read_parts(Case& read) {
   const JsonPlace place(&read.text, "");
   place.allow_only({"$schema", "id", "title", "figure_of_paper", "description", "claims", "notes", "quick",
-                    "repeat_on_other_threads", "scene", "sweep", "references", "probes", "snapshots", "gates",
+                    "repeat_on_other_threads", "metamorphoses", "scene", "sweep", "references", "probes", "snapshots", "gates",
                     "figures"});
   optional_text(place["$schema"]);
   read_description(place, read);
@@ -1246,6 +1268,7 @@ void read_parts(Case& read) {
   read.sweep = read_sweep(place["sweep"], scene_text);
   read.runs = expand(scene_text, read.sweep);
   require_suited(place["references"], read);
+  read.metamorphoses = read_metamorphoses(place["metamorphoses"], read);
   if (const JsonPlace probes = place["probes"]; probes.present()) {
     for (const JsonPlace& probe : probes.elements()) read.probes.push_back(read_probe(probe, read));
   }

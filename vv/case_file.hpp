@@ -143,7 +143,8 @@ struct Case {
   std::vector<std::string> notes;           ///< what a reader should know
   bool quick = true;                        ///< part of `report --quick`
   bool repeat_on_other_threads = false;     ///< run everything a second time on another number of threads: `bits_differ`
-  std::vector<std::string> references;      ///< reference solutions to judge against: equilibrium, hencky, zhang
+  std::vector<std::string> metamorphoses;   ///< other descriptions to run every scene in: names in vv/metamorphic.hpp
+  std::vector<std::string> references;      ///< reference solutions to judge against, of `reference_catalogue()`
   std::vector<SweepAxis> sweep;
   std::vector<RunRequest> runs;
   std::vector<HistoryProbe> probes;

@@ -322,7 +322,7 @@ const Metamorphosis& known(const std::string& metamorphosis) {
 }
 
 void require_suited(const std::string& metamorphosis, const Scene& scene) {
-  const std::string reason = why_unsuited(metamorphosis, scene);
+  const std::string reason = why_not_describable(metamorphosis, scene);
   if (!reason.empty()) throw std::invalid_argument(metamorphosis + " does not suit the scene: " + reason);
 }
 
@@ -461,7 +461,7 @@ const std::vector<Metamorphosis>& metamorphosis_catalogue() {
   return catalogue;
 }
 
-std::string why_unsuited(const std::string& metamorphosis, const Scene& scene) {
+std::string why_not_describable(const std::string& metamorphosis, const Scene& scene) {
   known(metamorphosis);
   if (scene.dimension == 1 && (metamorphosis == "swap_axes" || metamorphosis == "rotate_90"))
     return "there is only one axis";

@@ -10,6 +10,9 @@
 /// scene can be put to the test.
 namespace mpm::vv {
 
+/// What the metric of a metamorphosis is called: this and its name.
+inline const std::string metamorphic_prefix = "metamorphic.";
+
 /// One way to describe a scene differently.
 struct Metamorphosis {
   std::string name;
@@ -32,9 +35,9 @@ const std::vector<Metamorphosis>& metamorphosis_catalogue();
 
 /// Why a scene has no such description, for a person; empty if it has one. Throws std::invalid_argument for a
 /// name not in the catalogue. The scene is one that `mpm::check` accepts; SceneError may be thrown otherwise.
-std::string why_unsuited(const std::string& metamorphosis, const Scene& scene);
+std::string why_not_describable(const std::string& metamorphosis, const Scene& scene);
 
-/// The scene described differently, in all its members. Throws std::invalid_argument where `why_unsuited`
+/// The scene described differently, in all its members. Throws std::invalid_argument where `why_not_describable`
 /// knows a reason.
 Scene transformed(const Scene& scene, const std::string& metamorphosis);
 

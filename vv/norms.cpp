@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "vv/judging.hpp"
+#include "vv/metamorphic.hpp"
 
 namespace mpm::vv {
 namespace {
@@ -43,6 +44,11 @@ std::vector<Metric> general_metrics() {
                  "unbalanced force felt by the particles at the end / total weight"});
   all.push_back({"kinetic_energy_ratio", "-", "",
                  "kinetic energy of the grid at the end / (total weight * cell size)"});
+  for (const Metamorphosis& metamorphosis : metamorphosis_catalogue()) {
+    all.push_back({metamorphic_prefix + metamorphosis.name, "-", "",
+                   "largest relative difference to the run of the same scene otherwise described: " +
+                       metamorphosis.meaning});
+  }
   all.push_back({"mass_change", "-", "", "relative change of the total mass, end against start"});
   all.push_back({"non_finite_values", "-", "", "values in the record that are not finite numbers"});
   all.push_back(
@@ -146,6 +152,7 @@ Judgement judge(const Case& definition, const RunRequest& request, const Record&
   for (const History& history : record.histories) {
     judging.result.curves.push_back({history.id, "run", history.time, history.value, "time"});
   }
+  for (const auto& [name, value] : record.measured) judging.set(name, value);
   if (!record.completed()) return judging.result;
   judging.set("largest_compression", largest_compression(record.profile));
   judging.set("unbalanced_force_ratio", record.unbalanced_force_ratio);

@@ -18,6 +18,7 @@
 #include <numeric>
 #include <system_error>
 
+#include "vv/metamorphic.hpp"
 #include "vv/revision.hpp"
 #include "vv/sampler.hpp"
 
@@ -307,6 +308,8 @@ class Recorder {
     return result();
   }
 
+  ParticleFields particles() const { return simulation_.particles(); }
+
  private:
   using Clock = std::chrono::steady_clock;
 
@@ -526,6 +529,22 @@ std::string hash_of_program() {
   return hash.digits();
 }
 
+/// Runs the scene in another description and compares the ends. Infinite if that run does not complete.
+double difference_to(const Scene& scene, const std::string& metamorphosis, const ParticleFields& end,
+                     const Pulse& pulse) {
+  Simulation other(transformed(scene, metamorphosis));
+  const std::int64_t steps_per_pulse =
+      std::max<std::int64_t>(1, particle_steps_per_pulse / std::max<std::int64_t>(1, other.particle_count()));
+  std::int64_t reported = 0;
+  while (other.advance()) {
+    if (other.steps() - reported < steps_per_pulse) continue;
+    if (pulse && !pulse((other.steps() - reported) * other.particle_count())) throw Abandoned();
+    reported = other.steps();
+  }
+  if (!other.outcome().completed()) return std::numeric_limits<double>::infinity();
+  return largest_difference(end, mapped_back(scene, other.particles(), other.time(), metamorphosis));
+}
+
 }  // namespace
 
 std::string ending_of(const Record& record) {
@@ -561,6 +580,7 @@ Json to_json(const Record& record) {
             {"particle_steps", record.cost.particle_steps}}},
           {"profile", profile_to_json(record.profile)},
           {"histories", histories_to_json(record.histories)},
+          {"measured", record.measured},
           {"snapshots", snapshots_to_json(record.snapshots)}};
 }
 
@@ -588,12 +608,19 @@ Record record_from_json(const Json& json) {
                  .particle_steps = cost.at("particle_steps").get<std::int64_t>()};
   record.profile = profile_from_json(json.at("profile"));
   record.histories = histories_from_json(json.at("histories"));
+  record.measured = json.at("measured").get<std::map<std::string, double>>();
   record.snapshots = snapshots_from_json(json.at("snapshots"));
   return record;
 }
 
 Record simulate(const Case& definition, const RunRequest& request, const Pulse& pulse) {
-  Record record = Recorder(definition, request, pulse).run();
+  Recorder recorder(definition, request, pulse);
+  Record record = recorder.run();
+  for (const std::string& metamorphosis : definition.metamorphoses) {
+    if (!record.completed()) break;  // a state without an end has no other description of it
+    const double difference = difference_to(request.scene, metamorphosis, recorder.particles(), pulse);
+    if (std::isfinite(difference)) record.measured[metamorphic_prefix + metamorphosis] = difference;
+  }
   record.case_id = definition.id;
   record.input_hash = input_hash(definition, request);
   record.program_hash = program_hash();
@@ -611,6 +638,7 @@ std::string input_hash(const Case& definition, const RunRequest& request) {
                                   {"probe", snapshot.probe},
                                   {"value", snapshot.value}});
   }
+  if (!definition.metamorphoses.empty()) input["metamorphoses"] = definition.metamorphoses;
   return hash_of(input.dump());
 }
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -66,6 +67,7 @@ struct Record {
   std::string repeat_digest;  ///< the same of the repeat on another number of threads; empty without one
   Profile profile;
   std::vector<History> histories;
+  std::map<std::string, double> measured;  ///< metrics that need more than one state, by name; finite ones only
   std::vector<Snapshot> snapshots;  ///< in the order they were taken
   Cost cost;
 

@@ -251,7 +251,7 @@ TEST(Metamorphosis, MapsEveryFieldBack) {
       for (std::size_t v = 0; v < values; ++v)
         magnitude[v] = std::max(magnitude[v], std::abs(values_of(original, p)[v]));
     for (const Metamorphosis& metamorphosis : metamorphosis_catalogue()) {
-      if (!why_unsuited(metamorphosis.name, scene).empty()) continue;
+      if (!why_not_describable(metamorphosis.name, scene).empty()) continue;
       const ParticleFields mapped = back(scene, metamorphosis.name);
       ASSERT_EQ(mapped.mass.size(), original.mass.size());
       const double tolerance = metamorphosis.name == "shift" ? 1e-7 : 1e-9;  // components may be small
@@ -359,18 +359,18 @@ TEST(Metamorphosis, LeavesLevelGroundLevel) {
   for (const char* name : {"mirror_x", "translate", "units", "split"})
     EXPECT_LT(difference(ground, name), round_off) << name;
   EXPECT_EQ(difference(ground, "binary_units"), 0.0);
-  for (const char* name : {"swap_axes", "rotate_90"}) EXPECT_NE(why_unsuited(name, ground), "") << name;
+  for (const char* name : {"swap_axes", "rotate_90"}) EXPECT_NE(why_not_describable(name, ground), "") << name;
 }
 
 TEST(Metamorphosis, RefusesScenesItDoesNotSuit) {
   const auto refuses = [](const char* name, Scene scene, auto change) {
-    EXPECT_EQ(why_unsuited(name, scene), "") << name;
+    EXPECT_EQ(why_not_describable(name, scene), "") << name;
     change(scene);
-    EXPECT_NE(why_unsuited(name, scene), "") << name;
+    EXPECT_NE(why_not_describable(name, scene), "") << name;
     EXPECT_THROW(transformed(scene, name), std::invalid_argument);
     EXPECT_THROW(mapped_back(scene, {}, 0.0, name), std::invalid_argument);
   };
-  for (const char* name : {"swap_axes", "rotate_90"}) EXPECT_NE(why_unsuited(name, bar()), "") << name;
+  for (const char* name : {"swap_axes", "rotate_90"}) EXPECT_NE(why_not_describable(name, bar()), "") << name;
   refuses("mirror_x", bar(), [](Scene& scene) {
     scene.bodies[0].initial_stress = GeostaticStress{1.0, 0.5};
   });
@@ -391,8 +391,8 @@ TEST(Metamorphosis, RefusesScenesItDoesNotSuit) {
   });
   Scene slides = collision();
   slides.edges[1][0] = Condition::roller;
-  EXPECT_EQ(why_unsuited("shift", slides), "");
-  EXPECT_THROW(why_unsuited("upside_down", bar()), std::invalid_argument);
+  EXPECT_EQ(why_not_describable("shift", slides), "");
+  EXPECT_THROW(why_not_describable("upside_down", bar()), std::invalid_argument);
   EXPECT_THROW(mapped_back(bar(), answer_of(collision()).fields, 0.0, "units"), std::invalid_argument);
 }
 
