@@ -127,6 +127,8 @@ constexpr Named reference_names[] = {
     {"manufactured", "manufactured solution, exact motion", "the manufactured solution"},
     {"limit_analysis", "limit analysis, exact limit load", "limit analysis"},
     {"elastic_strip", "elastic strip, closed form", "the elastic strip"},
+    {"free_fall", "free fall, exact motion", "free fall"},
+    {"rotation", "rigid rotation, exact stress", "rigid rotation"},
     {"closed_form", "closed form", "the closed form"},
 };
 
@@ -134,11 +136,20 @@ constexpr std::pair<const char*, const char*> metric_names[] = {
     {"oscillation.hp", "high-pass content HP of the error"},
     {"oscillation.ns", "null-space content NS of the stress"},
     {"limit_analysis.overshoot", "overshoot of the exact limit load"},
-    {"elastic_strip.stiffness", "stiffness against the elastic strip"},
+    {"limit_analysis.shortfall", "shortfall of the exact limit load"},
+    {"limit_analysis.peak_overshoot", "overshoot of the peak load"},
+    {"limit_analysis.spread", "spread of the limit load"},
+    {"limit_analysis.pressure", "pressure at the limit"},
+    {"elastic_strip.stiffness", "error of stiffness against the elastic strip"},
+    {"elastic_strip.overshoot", "excess of stiffness over the elastic strip"},
+    {"free_fall.displacement", "error of displacement in free fall"},
+    {"free_fall.stress", "stress in free fall"},
+    {"rotation.stress", "error of stress under rotation"},
     {"momentum_change", "change of momentum"},
     {"energy_loss", "loss of energy"},
-    {"bar.frequency", "frequency of the bar"},
-    {"bar.amplitude", "amplitude of the bar"},
+    {"energy_gain", "gain of energy"},
+    {"bar.frequency", "error of the bar’s frequency"},
+    {"bar.amplitude", "error of the bar’s amplitude"},
     {"element.yield_excess", "stress beyond yield"},
 };
 

@@ -183,6 +183,7 @@ TEST(Names, OfMetricsAndReferencesAreForPeople) {
   EXPECT_EQ(name_of_metric("manufactured.displacement.l2"),
             "<i>L</i><sub>2</sub> error of displacement against the manufactured solution");
   EXPECT_EQ(name_of_metric("limit_analysis.overshoot"), "overshoot of the exact limit load");
+  EXPECT_EQ(name_of_metric("bar.frequency"), "error of the bar’s frequency");
   EXPECT_EQ(name_of_metric("metamorphic.mirror_image"), "difference under mirror image");
   EXPECT_EQ(name_of_metric("never_heard_of"), "never heard of");
   EXPECT_EQ(name_of_reference("limit_analysis"), "limit analysis, exact limit load");
