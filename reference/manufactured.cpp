@@ -131,7 +131,8 @@ struct GeneralisedVortex {
     const Length s = (radius - ring.mean()) * (2 / (ring.outer - ring.inner));
     const Length root = 1.0 - s * s;
     const Time swing = sin(time * (2 * pi / duration)) * amplitude;
-    const Number angle = root * root * swing;
+    const Length bump = root * root;
+    const Number angle = bump * bump * swing;
     return turned<Number>(arm, angle);
   }
 };

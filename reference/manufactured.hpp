@@ -72,13 +72,14 @@ using Parameters = std::map<std::string, double>;
 /// `axis_aligned`, 2D [Wallstedt08; Kamojjala15]: u_x = G sin(pi X/L) sin(pi c t/L), u_y = G sin(pi Y/L)
 /// sin(pi c t/L + pi) on the square 0 <= X, Y <= L: its edges slide along themselves. Parameters as above.
 ///
-/// `generalised_vortex`, 2D [Kamojjala15]: every circle between two radii turns about the center by alpha =
-/// A sin(2 pi t/T) h(R), h = (1 - s^2)^2, s = (R - R_m) / w, R_m the mean radius and w half the ring's width
-/// (for R_m = 1 and w = 1/4 the published 1 - 32 (R - 1)^2 + 256 (R - 1)^4). J = 1. At both radii h and its
-/// slope vanish, so there is neither motion nor stress, and outside there is none either; the body force
-/// jumps there, because h'' does. The sine starts without angular acceleration, hence with the centripetal
-/// one alone, (2 pi A h/T)^2 R. Parameters `amplitude` A [rad], `period` T [s] (2), `inner_radius` (0.75),
-/// `outer_radius` (1.25), `center_x`, `center_y` (0) [m].
+/// `generalised_vortex`, 2D, after [Kamojjala15]: every circle between two radii turns about the center by
+/// alpha = A sin(2 pi t/T) h(R), h = (1 - s^2)^4, s = (R - R_m) / w, R_m the mean radius and w half the
+/// ring's width. J = 1. At both radii h and its first three derivatives vanish, so there is neither motion
+/// nor stress and the body force comes to nothing smoothly; outside there is none either. The published h is
+/// the square of (1 - s^2): its body force jumps at both radii, and a jump sampled by particles costs every
+/// method its order. The sine starts without angular acceleration, hence with the centripetal one alone, (2
+/// pi A h/T)^2 R. Parameters `amplitude` A [rad], `period` T [s] (2), `inner_radius` (0.75), `outer_radius`
+/// (1.25), `center_x`, `center_y` (0) [m].
 ///
 /// `expanding_ring`, 2D [Kamojjala15]: r = R + A sin(omega t) f(R), f = k [R^3/3 - (R_i + R_o) R^2/2 +
 /// R_i R_o R], k such that the largest |f| on the ring is 1; to be evaluated on the ring only. Because f' =

@@ -236,14 +236,14 @@ TEST(VerificationOfManufacturedSolution, AxisAlignedEdgesSlideAlongThemselves) {
   }
 }
 
-TEST(VerificationOfManufacturedSolution, TheVortexTurnsCirclesAsPublishedAndKeepsTheVolume) {
+TEST(VerificationOfManufacturedSolution, TheVortexTurnsCirclesAndKeepsTheVolume) {
   const auto vortex = manufactured_solution("generalised_vortex", {{"amplitude", 1.0}}, soil);
   const double time = 0.5;  // the sine's peak
   for (double radius : {0.76, 0.8, 1.0, 1.1, 1.24})
     for (double direction : {0.0, 1.0, 4.0}) {
       const Place place{radius * std::cos(direction), radius * std::sin(direction)};
       const Place moved = vortex->displacement(place, time);
-      const double d = radius - 1, angle = 1 - 32 * d * d + 256 * d * d * d * d;
+      const double s = 4 * (radius - 1), angle = std::pow(1 - s * s, 4);
       EXPECT_NEAR(place[0] + moved[0], radius * std::cos(direction + angle), 1e-14);
       EXPECT_NEAR(place[1] + moved[1], radius * std::sin(direction + angle), 1e-14);
       const Tensor f = vortex->deformation_gradient(place, time);
@@ -267,6 +267,9 @@ TEST(VerificationOfManufacturedSolution, TheVortexLeavesItsFacesFreeAndTheOutsid
     for (double component : {stress.xx, stress.yy, stress.zz, stress.xy})
       EXPECT_NEAR(component, 0.0, 1e-12 * soil.youngs_modulus);
   }
+  // No jump at the faces: the force next to them is small beside what drives the middle.
+  EXPECT_LT(std::abs(vortex->body_force({1.249, 0.0}, time)[1]),
+            1e-3 * std::abs(vortex->body_force({1.1, 0.0}, time)[1]));
   // At the start there is but the centripetal force of its first speed, alpha' = pi.
   EXPECT_NEAR(vortex->body_force({1.0, 0.0}, 0.0)[0], -pi * pi, 1e-13);
   EXPECT_NEAR(vortex->body_force({1.0, 0.0}, 0.0)[1], 0.0, 1e-13);
