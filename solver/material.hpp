@@ -4,6 +4,7 @@
 
 #include "solver/linear_elastic.hpp"
 #include "solver/mohr_coulomb.hpp"
+#include "solver/neo_hookean.hpp"
 #include "solver/particles.hpp"
 #include "solver/zhang_elastic.hpp"
 
@@ -12,11 +13,11 @@ namespace mpm {
 /// The laws a body can follow in `Dim` dimensions.
 template <int Dim, class Real>
 struct Laws {
-  using Any = std::variant<LinearElasticLaw<Dim, Real>, MohrCoulombLaw<Real>>;
+  using Any = std::variant<LinearElasticLaw<Dim, Real>, MohrCoulombLaw<Real>, NeoHookeanLaw<Dim, Real>>;
 };
 template <class Real>
 struct Laws<1, Real> {
-  using Any = std::variant<LinearElasticLaw<1, Real>, ZhangElasticLaw<Real>>;
+  using Any = std::variant<LinearElasticLaw<1, Real>, ZhangElasticLaw<Real>, NeoHookeanLaw<1, Real>>;
 };
 
 /// The law of a material. The scene has been checked: a law exists in this dimension.
@@ -27,6 +28,7 @@ typename Laws<Dim, Real>::Any law_of(const Material& material) {
   } else {
     if (const auto* soil = std::get_if<MohrCoulomb>(&material)) return MohrCoulombLaw<Real>(*soil);
   }
+  if (const auto* rubber = std::get_if<NeoHookean>(&material)) return NeoHookeanLaw<Dim, Real>(*rubber);
   return LinearElasticLaw<Dim, Real>(std::get<LinearElastic>(material));
 }
 
@@ -55,6 +57,26 @@ void update_stress(const Law& law, ParticleRange range, Particles<Dim, Real>& pa
     particles.volume[p] *= 1 + trace<Dim, Real>(increment);
     stress = law.update(stress, increment, particles.volume[p] / particles.initial_volume[p]);
     for (std::size_t c = 0; c < components; ++c) particles.stress[c][p] = stress[c];
+  }
+}
+
+/// Deformation gradient, volume and stress of a neo-Hookean body's particles from their strain increments and
+/// rotations: F grows by (I + L dt) F, exact for particles that move with their velocity gradient L.
+template <class Real>
+void update_stress(const NeoHookeanLaw<2, Real>& law, ParticleRange range, Particles<2, Real>& particles) {
+  auto& gradient = particles.deformation_gradient;
+  for (Eigen::Index p = range.first; p < range.last; ++p) {
+    const Real xx = 1 + particles.strain_increment[0][p], yy = 1 + particles.strain_increment[1][p];
+    const Real xy = particles.strain_increment[3][p] - particles.rotation[p];
+    const Real yx = particles.strain_increment[3][p] + particles.rotation[p];
+    const std::array<Real, 4> old{gradient[0][p], gradient[1][p], gradient[2][p], gradient[3][p]};
+    const std::array<Real, 4> f{xx * old[0] + xy * old[2], xx * old[1] + xy * old[3],
+                                yx * old[0] + yy * old[2], yx * old[1] + yy * old[3]};
+    const Real volume_ratio = f[0] * f[3] - f[1] * f[2];
+    for (std::size_t k = 0; k < f.size(); ++k) gradient[k][p] = f[k];
+    particles.volume[p] = volume_ratio * particles.initial_volume[p];
+    const SymmetricTensor<2, Real> stress = law.stress(f, volume_ratio);
+    for (std::size_t c = 0; c < stress.size(); ++c) particles.stress[c][p] = stress[c];
   }
 }
 

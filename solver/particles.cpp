@@ -1,25 +1,14 @@
 #include "solver/particles.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace mpm {
 namespace {
 
-/// Particles of a body along each axis, and their spacing [m].
-struct Lattice {
-  std::array<std::int64_t, max_dimension> count{1, 1};
-  PerAxis spacing{};
-  std::int64_t total = 1;
-};
-
-Lattice lattice_of(const Scene& scene, const Body& body) {
-  Lattice lattice;
-  for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.dimension); ++axis) {
-    lattice.spacing[axis] = scene.cell_size / body.particles_per_cell[axis];
-    lattice.count[axis] = std::llround((body.upper[axis] - body.lower[axis]) / lattice.spacing[axis]);
-    lattice.total *= lattice.count[axis];
-  }
-  return lattice;
+bool lies_in(const Ring& ring, const PerAxis& place) {
+  const double radius = std::hypot(place[0] - ring.center[0], place[1] - ring.center[1]);
+  return radius >= ring.inner_radius && radius <= ring.outer_radius;
 }
 
 template <class Fields>
@@ -27,24 +16,77 @@ void resize(Fields& fields, Eigen::Index count) {
   for (auto& field : fields) field.setZero(count);
 }
 
+/// Stress a body starts with at a place, as (xx, yy, zz, xy); in one dimension only the first entry counts.
+SymmetricTensor<2, double> initial_stress_at(const Scene& scene, const Body& body, const PerAxis& place) {
+  if (!body.initial_stress) return {};
+  if (const auto* uniform = std::get_if<UniformStress>(&*body.initial_stress)) {
+    return {uniform->xx, uniform->yy, uniform->zz, uniform->xy};
+  }
+  const auto& ground = std::get<GeostaticStress>(*body.initial_stress);
+  const auto vertical_axis = static_cast<std::size_t>(scene.dimension - 1);
+  const double gravity = scene.gravity.acceleration[vertical_axis] * scene.gravity.level;
+  const double vertical = body.density * gravity * (ground.surface - place[vertical_axis]);
+  if (scene.dimension == 1) return {vertical, 0.0, 0.0, 0.0};
+  return {ground.k0 * vertical, vertical, ground.k0 * vertical, 0.0};
+}
+
 template <int Dim, class Real>
-void place(const Body& body, const Lattice& lattice, ParticleRange range, Particles<Dim, Real>& particles) {
+void place(const Scene& scene, const Body& body, const Lattice& lattice, ParticleRange range,
+           Particles<Dim, Real>& particles) {
   double volume = 1.0;
   for (std::size_t axis = 0; axis < Dim; ++axis) volume *= lattice.spacing[axis];
   for (Eigen::Index p = range.first; p < range.last; ++p) {
-    const std::int64_t k = p - range.first;
-    const std::array<std::int64_t, max_dimension> index{k % lattice.count[0], k / lattice.count[0]};
+    const PerAxis& center = lattice.centers[static_cast<std::size_t>(p - range.first)];
     for (std::size_t axis = 0; axis < Dim; ++axis) {
-      const double cells = static_cast<double>(index[axis]) + 0.5;
-      particles.position[axis][p] = static_cast<Real>(body.lower[axis] + cells * lattice.spacing[axis]);
+      particles.position[axis][p] = static_cast<Real>(center[axis]);
       particles.velocity[axis][p] = static_cast<Real>(body.velocity[axis]);
+    }
+    const SymmetricTensor<2, double> stress = initial_stress_at(scene, body, center);
+    for (std::size_t c = 0; c < particles.stress.size(); ++c) {
+      particles.stress[c][p] = static_cast<Real>(stress[c]);
     }
     particles.volume[p] = static_cast<Real>(volume);
     particles.mass[p] = static_cast<Real>(body.density * volume);
   }
 }
 
+bool has_neo_hookean(const Scene& scene) {
+  return std::any_of(scene.bodies.begin(), scene.bodies.end(),
+                     [](const Body& body) { return std::holds_alternative<NeoHookean>(body.material); });
+}
+
+/// Gives the fields that only some scenes need their length.
+template <int Dim, class Real>
+void reserve_optional_fields(const Scene& scene, Eigen::Index total, Particles<Dim, Real>& particles) {
+  const bool deforms = Dim == 2 && has_neo_hookean(scene);
+  particles.rotation.setZero(deforms || scene.objectivity == Objectivity::jaumann ? total : 0);
+  resize(particles.deformation_gradient, deforms ? total : 0);
+  if (deforms) {
+    for (std::size_t axis = 0; axis < Dim; ++axis) particles.deformation_gradient[axis * (Dim + 1)].setOnes();
+  }
+  resize(particles.strain, scene.sums_strain ? total : 0);
+  resize(particles.external_force, scene.driven_motion || !scene.surface_loads.empty() ? total : 0);
+}
+
 }  // namespace
+
+Lattice lattice_of(const Scene& scene, const Body& body) {
+  Lattice lattice;
+  std::array<std::int64_t, max_dimension> count{1, 1};
+  for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.dimension); ++axis) {
+    lattice.spacing[axis] = scene.cell_size / body.particles_per_cell[axis];
+    count[axis] = std::llround((body.upper[axis] - body.lower[axis]) / lattice.spacing[axis]);
+  }
+  for (std::int64_t k = 0; k < count[0] * count[1]; ++k) {
+    const std::array<std::int64_t, max_dimension> index{k % count[0], k / count[0]};
+    PerAxis center{};
+    for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.dimension); ++axis) {
+      center[axis] = body.lower[axis] + (static_cast<double>(index[axis]) + 0.5) * lattice.spacing[axis];
+    }
+    if (!body.ring || lies_in(*body.ring, center)) lattice.centers.push_back(center);
+  }
+  return lattice;
+}
 
 template <int Dim, class Real>
 Particles<Dim, Real> fill_bodies(const Scene& scene, bool with_domain) {
@@ -53,7 +95,7 @@ Particles<Dim, Real> fill_bodies(const Scene& scene, bool with_domain) {
   Eigen::Index total = 0;
   for (const Body& body : scene.bodies) {
     lattices.push_back(lattice_of(scene, body));
-    particles.bodies.push_back({total, total + lattices.back().total});
+    particles.bodies.push_back({total, total + static_cast<Eigen::Index>(lattices.back().centers.size())});
     total = particles.bodies.back().last;
   }
   resize(particles.position, total);
@@ -62,12 +104,12 @@ Particles<Dim, Real> fill_bodies(const Scene& scene, bool with_domain) {
   resize(particles.half_size, with_domain ? total : 0);
   resize(particles.stress, total);
   resize(particles.strain_increment, total);
-  particles.rotation.setZero(scene.objectivity == Objectivity::jaumann ? total : 0);
   particles.mass.setZero(total);
   particles.volume.setZero(total);
+  reserve_optional_fields(scene, total, particles);
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const ParticleRange range = particles.bodies[b];
-    place(scene.bodies[b], lattices[b], range, particles);
+    place(scene, scene.bodies[b], lattices[b], range, particles);
     for (std::size_t axis = 0; with_domain && axis < Dim; ++axis) {
       particles.half_size[axis].segment(range.first, range.last - range.first) =
           static_cast<Real>(lattices[b].spacing[axis] / 2);

@@ -28,7 +28,13 @@ struct Particles {
   std::array<Field<Real>, Dim> half_size;                ///< [m]; empty for scheme mpm
   std::array<Field<Real>, components> stress;            ///< Cauchy [Pa], tension positive
   std::array<Field<Real>, components> strain_increment;  ///< of the current step [-]
-  Field<Real> rotation;        ///< of the current step, anticlockwise [rad]; empty unless the stress turns
+  Field<Real> rotation;  ///< of the current step, anticlockwise [rad]; empty unless a body needs it
+  std::array<Field<Real>, components>
+      strain;  ///< sum of the increments [-]; empty unless the scene asks for it
+  std::array<Field<Real>, Dim * Dim>
+      deformation_gradient;  ///< row by row [-]; empty unless a neo-Hookean body in 2D needs it
+  std::array<Field<Real>, Dim>
+      external_force;          ///< beside gravity [N]; empty unless the scene has such forces
   Field<Real> mass;            ///< [kg per unit of the absent dimensions]
   Field<Real> volume;          ///< current [m^Dim]
   Field<Real> initial_volume;  ///< [m^Dim]
@@ -44,7 +50,14 @@ double total_mass(const Particles<Dim, Real>& particles) {
   return std::accumulate(particles.mass.begin(), particles.mass.end(), 0.0);
 }
 
-/// Fills the bodies of a checked scene with particles at rest, free of stress.
+/// The centers of a body's particles in their order, and the spacing between them along each axis [m].
+struct Lattice {
+  std::vector<PerAxis> centers;
+  PerAxis spacing{};
+};
+Lattice lattice_of(const Scene& scene, const Body& body);
+
+/// Fills the bodies of a checked scene with particles at their bodies' initial velocities and stresses.
 /// `with_domain`: whether the scheme needs half sizes.
 template <int Dim, class Real>
 Particles<Dim, Real> fill_bodies(const Scene& scene, bool with_domain);

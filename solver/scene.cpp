@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "solver/error.hpp"
+#include "solver/particles.hpp"
 
 namespace mpm {
 namespace {
@@ -142,6 +143,7 @@ void check_material(const Scene& scene, const Body& body, const std::string& pla
                           check_poissons_ratio(law.poissons_ratio, place);
                           check_strength(law, place);
                         },
+                        [&](const NeoHookean& law) { check_poissons_ratio(law.poissons_ratio, place); },
                         [&](const ZhangElastic&) {
                           require(scene.dimension == 1, place + "/law",
                                   "a law for " + std::to_string(scene.dimension) + " dimensions",
@@ -189,7 +191,69 @@ double check_extent(const Scene& scene, const Body& body, std::size_t axis, cons
   return spacings_at(upper) - spacings_at(lower);
 }
 
-/// Returns the number of particles of the body.
+void check_ring(const Scene& scene, const Body& body, const std::string& place) {
+  if (!body.ring) return;
+  const Ring& ring = *body.ring;
+  require(scene.dimension == 2, place, "no ring in one dimension", "one");
+  for (std::size_t axis = 0; axis < axes_of(scene); ++axis) {
+    require_finite(ring.center[axis], at_index(place + "/center", axis), "length", "m");
+  }
+  require(std::isfinite(ring.inner_radius) && ring.inner_radius >= 0.0, place + "/inner_radius",
+          "a radius, zero or above", text_of(ring.inner_radius, "m"));
+  require(std::isfinite(ring.outer_radius) && ring.outer_radius > ring.inner_radius, place + "/outer_radius",
+          "a radius above the inner one, " + text_of(ring.inner_radius, "m"),
+          text_of(ring.outer_radius, "m"));
+}
+
+/// Whether particles are left is known only once the block's edges are.
+void require_ring_hits(const Scene& scene, const Body& body, const std::string& place) {
+  if (!body.ring) return;
+  require(!lattice_of(scene, body).centers.empty(), place, "a ring with at least one particle center in it",
+          "radii from " + text_of(body.ring->inner_radius, "m") + " to " +
+              text_of(body.ring->outer_radius, "m") + ", which hold none of the block's");
+}
+
+void check_density_ramp(const Body& body, const std::string& place) {
+  if (!body.density_ramp) return;
+  const DensityRamp& ramp = *body.density_ramp;
+  require_positive(ramp.final_density, place + "/final_density", "a density", "kg/m^3");
+  require(std::isfinite(ramp.start) && ramp.start >= 0.0, place + "/start", "a time, zero or above",
+          text_of(ramp.start, "s"));
+  require_positive(ramp.duration, place + "/duration", "a time", "s");
+}
+
+void check_geostatic(const Scene& scene, const Body& body, const GeostaticStress& stress,
+                     const std::string& place) {
+  const std::size_t vertical = axes_of(scene) - 1;
+  require(std::isfinite(stress.surface) &&
+              stress.surface >= body.upper[vertical] - whole_number_tolerance * scene.cell_size,
+          place + "/surface",
+          "a height not below the body's upper edge, " + text_of(body.upper[vertical], "m"),
+          text_of(stress.surface, "m"));
+  require(std::isfinite(stress.k0) && stress.k0 >= 0.0, place + "/k0", "a ratio, zero or above",
+          text_of(stress.k0));
+  for (std::size_t axis = 0; axis < vertical; ++axis) {
+    require(scene.gravity.acceleration[axis] == 0.0, place + "/type",
+            "a uniform stress where gravity is not along the last axis", "geostatic");
+  }
+}
+
+void check_initial_stress(const Scene& scene, const Body& body, const std::string& place) {
+  if (!body.initial_stress) return;
+  require(!std::holds_alternative<ZhangElastic>(body.material) &&
+              !std::holds_alternative<NeoHookean>(body.material),
+          place, "no initial stress with a law whose stress follows from the deformation alone", "one");
+  std::visit(Overloaded{[&](const UniformStress& stress) {
+                          require_finite(stress.xx, place + "/xx", "pressure", "Pa");
+                          require_finite(stress.yy, place + "/yy", "pressure", "Pa");
+                          require_finite(stress.zz, place + "/zz", "pressure", "Pa");
+                          require_finite(stress.xy, place + "/xy", "pressure", "Pa");
+                        },
+                        [&](const GeostaticStress& stress) { check_geostatic(scene, body, stress, place); }},
+             *body.initial_stress);
+}
+
+/// Returns the number of particles of the body's block.
 double check_body(const Scene& scene, const Body& body, const std::string& place) {
   require(!body.name.empty(), place + "/name", "a name", "an empty text");
   require_positive(body.density, place + "/density", "a density", "kg/m^3");
@@ -197,9 +261,14 @@ double check_body(const Scene& scene, const Body& body, const std::string& place
     require_finite(body.velocity[axis], at_index(place + "/velocity", axis), "velocity", "m/s");
   }
   check_material(scene, body, place + "/material");
+  check_ring(scene, body, place + "/ring");
+  check_density_ramp(body, place + "/density_ramp");
   double particles = 1.0;
   for (std::size_t axis = 0; axis < axes_of(scene); ++axis)
     particles *= check_extent(scene, body, axis, place);
+  require_few_particles(particles, place);
+  require_ring_hits(scene, body, place + "/ring");
+  check_initial_stress(scene, body, place + "/initial_stress");
   return particles;
 }
 
@@ -227,6 +296,115 @@ void check_bodies(const Scene& scene) {
               "\"" + body.name + "\", which overlaps \"" + other.name + "\"");
     }
   }
+}
+
+/// Whether a rigid body's box holds nodes of an edge of the grid at the start.
+bool holds_edge(const Scene& scene, const RigidBody& body, std::size_t axis, std::size_t side) {
+  const double edge = side == 0 ? scene.grid_lower[axis] : scene.grid_upper[axis];
+  const double slack = whole_number_tolerance * scene.cell_size;
+  return body.lower[axis] <= edge + slack && body.upper[axis] >= edge - slack;
+}
+
+/// A node cannot both stand still with its edge and move with a body.
+void check_against_edges(const Scene& scene, const RigidBody& body, const std::string& place) {
+  for (std::size_t component = 0; component < axes_of(scene); ++component) {
+    if (!body.constrains[component]) continue;
+    if (body.velocity[component] == 0.0 && body.angular_velocity == 0.0) continue;
+    for (std::size_t axis = 0; axis < axes_of(scene); ++axis) {
+      for (const std::size_t side : {0u, 1u}) {
+        const Condition condition = scene.edges[axis][side];
+        const bool holds =
+            condition == Condition::fixed || (condition == Condition::roller && axis == component);
+        require(!holds || !holds_edge(scene, body, axis, side), at_index(place + "/velocity", component),
+                "no motion along an axis in which an edge of the grid holds nodes of the body",
+                text_of(body.velocity[component], "m/s"));
+      }
+    }
+  }
+}
+
+/// The body holds a node at the start, or it would press on nothing.
+void require_nodes(const Scene& scene, const RigidBody& body, const std::string& place) {
+  for (std::size_t axis = 0; axis < axes_of(scene); ++axis) {
+    const double h = scene.cell_size;
+    const double first =
+        std::ceil((std::max(body.lower[axis], scene.grid_lower[axis]) - scene.grid_lower[axis]) / h -
+                  whole_number_tolerance);
+    const double last =
+        std::floor((std::min(body.upper[axis], scene.grid_upper[axis]) - scene.grid_lower[axis]) / h +
+                   whole_number_tolerance);
+    require(first <= last, at_index(place + "/upper", axis), "a rigid body that holds a node of the grid",
+            text_of(body.lower[axis], "m") + " to " + text_of(body.upper[axis], "m") + ", between two nodes");
+  }
+}
+
+void check_rigid_body(const Scene& scene, const RigidBody& body, const std::string& place) {
+  require(!body.name.empty(), place + "/name", "a name", "an empty text");
+  bool any = false;
+  for (std::size_t axis = 0; axis < axes_of(scene); ++axis) {
+    require_finite(body.lower[axis], at_index(place + "/lower", axis), "length", "m");
+    require_finite(body.upper[axis], at_index(place + "/upper", axis), "length", "m");
+    require(body.upper[axis] > body.lower[axis], at_index(place + "/upper", axis),
+            "a length above the lower corner's, " + text_of(body.lower[axis], "m"),
+            text_of(body.upper[axis], "m"));
+    require_finite(body.velocity[axis], at_index(place + "/velocity", axis), "velocity", "m/s");
+    any = any || body.constrains[axis];
+  }
+  require(any, place + "/constrains", "at least one component", "none");
+  require(std::isfinite(body.angular_velocity) && (scene.dimension == 2 || body.angular_velocity == 0.0),
+          place + "/angular_velocity", scene.dimension == 2 ? "a finite rate" : "none in one dimension",
+          text_of(body.angular_velocity, "rad/s"));
+  require(std::isfinite(body.start) && body.start >= 0.0, place + "/start", "a time, zero or above",
+          text_of(body.start, "s"));
+  require(std::isfinite(body.ramp) && body.ramp >= 0.0, place + "/ramp", "a time, zero or above",
+          text_of(body.ramp, "s"));
+  require_nodes(scene, body, place);
+  check_against_edges(scene, body, place);
+}
+
+void check_rigid_bodies(const Scene& scene) {
+  for (std::size_t i = 0; i < scene.rigid_bodies.size(); ++i) {
+    const RigidBody& body = scene.rigid_bodies[i];
+    const std::string place = at_index("/rigid_bodies", i);
+    check_rigid_body(scene, body, place);
+    const auto has_its_name = [&](const auto& other) { return other.name == body.name; };
+    const auto earlier = scene.rigid_bodies.begin() + static_cast<std::ptrdiff_t>(i);
+    require(std::none_of(scene.bodies.begin(), scene.bodies.end(), has_its_name) &&
+                std::none_of(scene.rigid_bodies.begin(), earlier, has_its_name),
+            place + "/name", "a name no other body has", "\"" + body.name + "\"");
+  }
+}
+
+void check_surface_load(const Scene& scene, const SurfaceLoad& load, const std::string& place) {
+  const auto body = std::find_if(scene.bodies.begin(), scene.bodies.end(),
+                                 [&](const Body& candidate) { return candidate.name == load.body; });
+  require(body != scene.bodies.end(), place + "/body", "the name of a body", "\"" + load.body + "\"");
+  require(!body->ring, place + "/body", "a whole block, which has straight edges",
+          "\"" + load.body + "\", a ring");
+  require(load.axis >= 0 && load.axis < scene.dimension && (load.side == 0 || load.side == 1),
+          place + "/edge", "an edge of the body",
+          "axis " + std::to_string(load.axis) + ", side " + std::to_string(load.side));
+  for (std::size_t axis = 0; axis < axes_of(scene); ++axis) {
+    require_finite(load.traction[axis], at_index(place + "/traction", axis), "pressure", "Pa");
+  }
+  require(std::isfinite(load.ramp) && load.ramp >= 0.0, place + "/ramp", "a time, zero or above",
+          text_of(load.ramp, "s"));
+  if (scene.dimension == 1) return;
+  const auto along = static_cast<std::size_t>(1 - load.axis);
+  const double spacing = scene.cell_size / body->particles_per_cell[along];
+  require_finite(load.begin, place + "/from", "length", "m");
+  require(std::isfinite(load.end) &&
+              std::min(load.end, body->upper[along]) - std::max(load.begin, body->lower[along]) >=
+                  spacing * (1 - whole_number_tolerance),
+          place + "/to",
+          "a stretch of at least one particle, " + text_of(spacing, "m") + ", of the body's edge",
+          text_of(load.begin, "m") + " to " + text_of(load.end, "m"));
+}
+
+void check_driven_motion(const Scene& scene) {
+  if (!scene.driven_motion) return;
+  require(scene.driven_motion->velocity && scene.driven_motion->body_force, "/driven_motion",
+          "both a velocity and a body force", "one of them missing");
 }
 
 void check_loading(const Gravity& gravity) {
@@ -308,6 +486,23 @@ std::size_t stage_at(const StagedLoading& staged, double time) {
 
 }  // namespace
 
+double Body::density_at(double time) const {
+  if (!density_ramp) return density;
+  const double done = std::clamp((time - density_ramp->start) / density_ramp->duration, 0.0, 1.0);
+  return density + done * (density_ramp->final_density - density);
+}
+
+double RigidBody::speed_fraction(double time) const {
+  if (time < start) return 0.0;
+  return ramp > 0.0 ? std::min((time - start) / ramp, 1.0) : 1.0;
+}
+
+double RigidBody::travel_time(double time) const {
+  const double moving = std::max(time - start, 0.0);
+  if (moving < ramp) return moving * moving / (2 * ramp);
+  return moving - ramp / 2;
+}
+
 double Gravity::fraction(double time) const {
   return std::visit(
       Overloaded{[](const StepLoading&) { return 1.0; },
@@ -331,8 +526,13 @@ double Gravity::settled_after() const {
 void check(const Scene& scene) {
   check_method(scene);
   check_grid(scene);
+  check_gravity(scene);  // before the bodies, whose initial stress it makes
   check_bodies(scene);
-  check_gravity(scene);
+  check_rigid_bodies(scene);
+  for (std::size_t i = 0; i < scene.surface_loads.size(); ++i) {
+    check_surface_load(scene, scene.surface_loads[i], at_index("/surface_loads", i));
+  }
+  check_driven_motion(scene);
   check_time_step(scene);
   check_termination(scene);
 }

@@ -53,9 +53,9 @@ struct MohrCoulomb {
   double dilation_angle;  ///< psi [rad], in [0, phi]; phi is associated flow, 0 keeps the volume
 };
 
-/// Hyperelastic, stress from the deformation gradient F: [lambda ln J I + mu (F F^T - I)] / J, J = det F. It keeps
-/// its energy over any cycle and turns with the material by itself. In one dimension lateral strain is free of
-/// stress: mu (F - 1/F) with mu = E/2.
+/// Hyperelastic, stress from the deformation gradient F: [lambda ln J I + mu (F F^T - I)] / J, J = det F. It
+/// keeps its energy over any cycle and turns with the material by itself. In one dimension lateral strain is
+/// free of stress: mu (F - 1/F) with mu = E/2.
 struct NeoHookean {
   double youngs_modulus;  ///< of small strains [Pa], > 0
   double poissons_ratio;  ///< of small strains [-], in [0, 0.5); no effect in one dimension
@@ -75,15 +75,17 @@ struct GeostaticStress {
 };
 using InitialStress = std::variant<UniformStress, GeostaticStress>;
 
-/// A density that changes while the scene goes on: mass is added to (or taken from) every particle of the body
-/// at its current velocity. Constant until `start`, linear in time over `duration`, constant from then on.
+/// A density that changes while the scene goes on: mass is added to (or taken from) every particle of the
+/// body at its current velocity. Constant until `start`, linear in time over `duration`, constant from then
+/// on.
 struct DensityRamp {
   double final_density;  ///< [kg/m^3] of initial volume, > 0
   double start;          ///< [s], >= 0
   double duration;       ///< [s], > 0
 };
 
-/// What of a block belongs to a body: the particles whose centers lie between two radii; a disc has none inside.
+/// What of a block belongs to a body: the particles whose centers lie between two radii; a disc has none
+/// inside.
 struct Ring {
   PerAxis center{};           ///< [m]
   double inner_radius = 0.0;  ///< [m], >= 0
@@ -101,6 +103,8 @@ struct Body {
   PerAxis velocity{};  ///< initial [m/s]
   std::optional<InitialStress> initial_stress;
   Material material = LinearElastic{0.0, 0.0};
+
+  double density_at(double time) const;  ///< of initial volume, at `time` [s] [kg/m^3]
 };
 
 /// A rigid box that moves as prescribed and acts through the grid: the nodes inside it (edges included) take
@@ -109,7 +113,8 @@ struct Body {
 struct RigidBody {
   std::string name;
   PerAxis lower{}, upper{};  ///< corners at the start [m]; may reach beyond the grid
-  std::array<bool, max_dimension> constrains{true, true};  ///< components; a smooth footing leaves its tangential one
+  std::array<bool, max_dimension> constrains{
+      true, true};                ///< components; a smooth footing leaves its tangential one
   PerAxis velocity{};             ///< once in full motion [m/s]
   double angular_velocity = 0.0;  ///< of the nodes' velocity about the box's center, anticlockwise [rad/s]
   double start = 0.0;             ///< at rest until then [s], >= 0
@@ -122,10 +127,10 @@ struct RigidBody {
 /// A traction on part of one edge of a block, carried by its outermost row of particles for good.
 struct SurfaceLoad {
   std::string body;
-  int axis = 0, side = 0;        ///< which edge: normal axis, 0 lower or 1 upper
-  double begin = 0.0, end = 0.0; ///< which part of it, along the other axis at the start [m]; not read in 1D
-  PerAxis traction{};            ///< force per initial area [Pa]
-  double ramp = 0.0;             ///< grows linearly over this time [s], >= 0; 0 is at once
+  int axis = 0, side = 0;         ///< which edge: normal axis, 0 lower or 1 upper
+  double begin = 0.0, end = 0.0;  ///< which part of it, along the other axis at the start [m]; not read in 1D
+  PerAxis traction{};             ///< force per initial area [Pa]
+  double ramp = 0.0;              ///< grows linearly over this time [s], >= 0; 0 is at once
 };
 
 /// A motion that is imposed by an initial velocity and a body force, so that its exact course is known.

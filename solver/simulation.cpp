@@ -18,8 +18,11 @@ double fastest_wave(const Scene& scene) {
                                 : std::visit(wave_modulus, law_of<2, double>(material));
   };
   double speed = 0.0;
-  for (const Body& body : scene.bodies)
-    speed = std::max(speed, std::sqrt(modulus(body.material) / body.density));
+  for (const Body& body : scene.bodies) {
+    const double lightest =
+        body.density_ramp ? std::min(body.density, body.density_ramp->final_density) : body.density;
+    speed = std::max(speed, std::sqrt(modulus(body.material) / lightest));
+  }
   return speed;
 }
 
@@ -92,11 +95,12 @@ class Simulation::Engine {
   virtual std::int64_t cell_crossings() const = 0;
   virtual Monitor monitor() const = 0;
   virtual ParticleFields particles() const = 0;
+  virtual std::vector<RigidBodyState> rigid_bodies() const = 0;
 
   bool advance() {
     if (ended_) return false;
     const double fraction = scene_.gravity.fraction(time_at(outcome_.step + 1));
-    if (step(scene_.gravity.level * fraction)) {
+    if (step(outcome_.time, scene_.gravity.level * fraction)) {
       ++outcome_.step;
       outcome_.time = time_at(outcome_.step);
     }
@@ -112,8 +116,8 @@ class Simulation::Engine {
   double time_at(std::int64_t step) const { return static_cast<double>(step) * time_step_; }
 
  protected:
-  /// One step; false after `fail`.
-  virtual bool step(double gravity_level) = 0;
+  /// One step from `time` on; false after `fail`.
+  virtual bool step(double time, double gravity_level) = 0;
   /// Calls `fail` if a particle is in a state that has no next step. True if so.
   virtual bool look_for_fault() = 0;
 
@@ -185,16 +189,38 @@ class Simulation::EngineOf final : public Simulation::Engine {
     fields.volume = to_doubles(p.volume);
     fields.initial_volume = to_doubles(p.initial_volume);
     fields.mass = to_doubles(p.mass);
+    if (scene().sums_strain) fields.strain = interleave(p.strain, p.count());
+    if (p.deformation_gradient[0].size() > 0) {
+      fields.deformation_gradient = interleave(p.deformation_gradient, p.count());
+    }
+    fields.body.reserve(fields.mass.size());
+    for (std::size_t b = 0; b < p.bodies.size(); ++b) {
+      fields.body.insert(fields.body.end(), static_cast<std::size_t>(p.bodies[b].last - p.bodies[b].first),
+                         b);
+    }
     return fields;
   }
 
+  std::vector<RigidBodyState> rigid_bodies() const override {
+    std::vector<RigidBodyState> states;
+    for (std::size_t b = 0; b < scene().rigid_bodies.size(); ++b) {
+      const RigidBody& body = scene().rigid_bodies[b];
+      RigidBodyState state{.displacement = {}, .impulse = stepper_.rigid_bodies().impulses()[b]};
+      for (std::size_t a = 0; a < Dim; ++a) {
+        state.displacement[a] = body.velocity[a] * body.travel_time(outcome().time);
+      }
+      states.push_back(state);
+    }
+    return states;
+  }
+
  protected:
-  bool step(double gravity_level) override {
+  bool step(double time, double gravity_level) override {
     Vector<Dim, Real> gravity;
     for (std::size_t a = 0; a < Dim; ++a) {
       gravity[a] = static_cast<Real>(gravity_level * scene().gravity.acceleration[a]);
     }
-    return stepper_.advance(gravity) || !look_for_fault();
+    return stepper_.advance(time, gravity) || !look_for_fault();
   }
 
   bool look_for_fault() override {
@@ -250,5 +276,6 @@ std::int64_t Simulation::particle_count() const { return engine_->particle_count
 std::int64_t Simulation::cell_crossings() const { return engine_->cell_crossings(); }
 Monitor Simulation::monitor() const { return engine_->monitor(); }
 ParticleFields Simulation::particles() const { return engine_->particles(); }
+std::vector<RigidBodyState> Simulation::rigid_bodies() const { return engine_->rigid_bodies(); }
 
 }  // namespace mpm

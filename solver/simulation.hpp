@@ -46,16 +46,18 @@ struct ParticleFields {
   std::vector<double> volume;  ///< [particle] current [m^dimension]
   std::vector<double> initial_volume;  ///< [particle]
   std::vector<double> mass;            ///< [particle] [kg per unit of the absent dimensions]
-  std::vector<double> strain;  ///< sum of the increments, shape of `stress` [-]; empty unless the scene sums strain
-  std::vector<double> deformation_gradient;  ///< [particle * dimension^2 + row * dimension + column] [-]; empty
-                                             ///< unless a neo-Hookean body in 2D needs it
-  std::vector<std::size_t> body;             ///< [particle] index into Scene::bodies
+  std::vector<double>
+      strain;  ///< sum of the increments, shape of `stress` [-]; empty unless the scene sums strain
+  std::vector<double> deformation_gradient;  ///< [particle * dimension^2 + row * dimension + column] [-];
+                                             ///< empty unless a neo-Hookean body in 2D needs it
+  std::vector<std::size_t> body;  ///< [particle] index into Scene::bodies
 };
 
 /// What a rigid body has done so far.
 struct RigidBodyState {
   PerAxis displacement{};  ///< [m]
-  PerAxis impulse{};       ///< of the particles on the body, summed over the steps [N s per unit of the absent dimensions]
+  PerAxis impulse{};  ///< of the particles on the body, summed over the steps [N s per unit of the absent
+                      ///< dimensions]
 };
 
 /// Quantities of the whole model after the last step.

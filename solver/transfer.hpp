@@ -52,6 +52,8 @@ class Transfer {
   void scatter_momentum(const Points& particles, Nodes& grid) const;
   /// Adds the internal force [Kiriyama15, Eq. 2].
   void scatter_internal_force(const Points& particles, Nodes& grid) const;
+  /// Adds the particles' external forces, of a scene that has them [Kiriyama15, Eq. 3].
+  void scatter_external_force(const Points& particles, Nodes& grid) const;
   /// Adds mass, momentum and internal force in one pass.
   void scatter_all(const Points& particles, Nodes& grid) const;
 
@@ -213,6 +215,18 @@ void Transfer<Dim, Real, scheme>::scatter_internal_force(const Points& particles
 template <int Dim, class Real, Scheme scheme>
 void Transfer<Dim, Real, scheme>::scatter_all(const Points& particles, Nodes& grid) const {
   scatter<true, true>(particles, grid);
+}
+
+template <int Dim, class Real, Scheme scheme>
+void Transfer<Dim, Real, scheme>::scatter_external_force(const Points& particles, Nodes& grid) const {
+  for (Eigen::Index p = 0; p < particles.count(); ++p) {
+    Vector<Dim, Real> force;
+    for (std::size_t a = 0; a < Dim; ++a) force[a] = particles.external_force[a][p];
+    for_each_node(stencils_[static_cast<std::size_t>(p)], grid.row_stride(),
+                  [&](std::size_t i, Real weight, const Vector<Dim, Real>&) {
+                    for (std::size_t a = 0; a < Dim; ++a) grid.sums[i].force[a] += weight * force[a];
+                  });
+  }
 }
 
 template <int Dim, class Real, Scheme scheme>

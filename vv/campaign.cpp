@@ -134,7 +134,7 @@ struct Job {
   bool reuse(const std::function<bool(const Record&)>& acceptable = {}) {
     std::optional<Record> stored = read_record(file);
     if (!stored || stored->case_id != definition->id || stored->program_hash != program_hash() ||
-        stored->input_hash != input_hash(request(), definition->probes) || !stored->failure.empty() ||
+        stored->input_hash != input_hash(*definition, request()) || !stored->failure.empty() ||
         (acceptable && !acceptable(*stored))) {
       return false;
     }
@@ -257,7 +257,7 @@ class Pool {
   static Record failed(const Job& job, const std::string& reason) {
     Record record;
     record.case_id = job.definition->id;
-    record.input_hash = input_hash(job.request(), job.definition->probes);
+    record.input_hash = input_hash(*job.definition, job.request());
     record.program_hash = program_hash();
     record.revision = build_facts().revision;
     record.failure = reason.empty() ? "an exception without a text" : reason;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
@@ -8,6 +9,10 @@
 #include <vector>
 
 #include "solver/scene.hpp"
+
+namespace mpm::reference {
+class ManufacturedSolution;
+}
 
 namespace mpm::vv {
 
@@ -65,9 +70,16 @@ struct Claim {
   std::string remark;              ///< for a person; required unless the claim is seen
 };
 
+/// Another place of the scene that changes together with a swept parameter.
+struct Follower {
+  std::string parameter;     ///< JSON pointer into the case, below /scene
+  std::vector<Json> values;  ///< one for each value of the axis
+};
+
 struct SweepAxis {
-  std::string parameter;  ///< JSON pointer into the case, below /scene
+  std::string parameter;  ///< JSON pointer into the case, below /scene; it alone names the runs
   std::vector<Json> values;
+  std::vector<Follower> with = {};
 };
 
 /// What a history probe looks at.
@@ -96,6 +108,8 @@ struct SnapshotRequest {
   double time = 0.0;   ///< the first step that ends at or after it [s]
   std::string probe;   ///< passing: id of a displacement probe ...
   double value = 0.0;  ///< ... and the value it reaches or crosses for the first time at one of its samples [m]
+
+  friend bool operator==(const SnapshotRequest&, const SnapshotRequest&) = default;
 };
 
 /// A picture the report draws from the verdict of the case.
@@ -118,6 +132,7 @@ struct RunRequest {
   std::vector<std::pair<std::string, Json>> parameters;  ///< swept JSON pointer and value, in sweep order
   Json scene_text;                                       ///< the case's /scene with the parameters put in
   Scene scene;                                           ///< checked
+  std::shared_ptr<const reference::ManufacturedSolution> motion = nullptr;  ///< what drives the scene; may be null
 };
 
 /// One case file, checked: every run it asks for can start.

@@ -16,6 +16,7 @@ constexpr Unit pressure_units[] = {{"Pa", 0}, {"kPa", 3}, {"MPa", 6}, {"GPa", 9}
 constexpr Unit density_units[] = {{"kg/m^3", 0}, {"g/cm^3", 3}, {"t/m^3", 3}};
 constexpr Unit acceleration_units[] = {{"m/s^2", 0}};
 constexpr Unit angle_units[] = {{"deg", 0}};
+constexpr Unit angular_velocity_units[] = {{"rad/s", 0}};
 constexpr Unit velocity_units[] = {{"m/s", 0}, {"mm/s", -3}, {"cm/s", -2}};
 
 struct KindEntry {
@@ -25,7 +26,7 @@ struct KindEntry {
   std::span<const Unit> units;
 };
 
-constexpr std::array<KindEntry, 7> kinds = {{
+constexpr std::array<KindEntry, 8> kinds = {{
     {QuantityKind::length, "a length", "0.02 m", length_units},
     {QuantityKind::time, "a time", "0.5 s", time_units},
     {QuantityKind::pressure, "a pressure", "10 kPa", pressure_units},
@@ -33,6 +34,7 @@ constexpr std::array<KindEntry, 7> kinds = {{
     {QuantityKind::acceleration, "an acceleration", "-9.8 m/s^2", acceleration_units},
     {QuantityKind::velocity, "a velocity", "0.1 m/s", velocity_units},
     {QuantityKind::angle, "an angle", "30 deg", angle_units},
+    {QuantityKind::angular_velocity, "an angular velocity", "0.5 rad/s", angular_velocity_units},
 }};
 
 /// Units that are easily taken for another kind's, with the way out.

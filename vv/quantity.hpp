@@ -8,7 +8,7 @@
 namespace mpm::vv {
 
 /// What a number with a unit measures.
-enum class QuantityKind { length, time, pressure, density, acceleration, velocity, angle };
+enum class QuantityKind { length, time, pressure, density, acceleration, velocity, angle, angular_velocity };
 
 /// A unit a quantity may be written in: 10^`exponent` of the kind's SI unit.
 ///

@@ -4,10 +4,12 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <bit>
 #include <cerrno>
+#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <cstddef>
@@ -17,6 +19,7 @@
 #include <system_error>
 
 #include "vv/revision.hpp"
+#include "vv/sampler.hpp"
 
 namespace mpm::vv {
 namespace {
@@ -159,7 +162,115 @@ std::vector<History> histories_from_json(const Json& json) {
   return histories;
 }
 
-// ---- probes ----
+// ---- snapshots ----
+
+/// The double nearest to `value` written with nine significant digits, which is written out no longer than
+/// that.
+double rounded(double value) {
+  if (!std::isfinite(value)) return value;
+  std::array<char, 32> text;
+  const auto end =
+      std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::scientific, 8).ptr;
+  std::from_chars(text.data(), end, value);
+  return value;
+}
+
+std::vector<double> rounded(std::vector<double> values) {
+  for (double& value : values) value = rounded(value);
+  return values;
+}
+
+/// The fields of the particles, their names, and how many entries a particle has in each (where it has any),
+/// once for both directions and for the digest.
+template <class Fields, class Visit>
+void for_each_particle_field(Fields& fields, Visit visit) {
+  const auto dimension = static_cast<std::size_t>(fields.dimension);
+  const std::size_t components = dimension == 1 ? 1 : 4;
+  visit("initial_position", fields.initial_position, dimension);
+  visit("displacement", fields.displacement, dimension);
+  visit("position", fields.position, dimension);
+  visit("velocity", fields.velocity, dimension);
+  visit("half_size", fields.half_size, dimension);
+  visit("stress", fields.stress, components);
+  visit("volume", fields.volume, std::size_t{1});
+  visit("initial_volume", fields.initial_volume, std::size_t{1});
+  visit("mass", fields.mass, std::size_t{1});
+  visit("strain", fields.strain, components);
+  visit("deformation_gradient", fields.deformation_gradient, dimension * dimension);
+}
+
+ParticleFields rounded(ParticleFields fields) {
+  for_each_particle_field(fields, [](const char*, std::vector<double>& values, std::size_t) {
+    values = rounded(std::move(values));
+  });
+  return fields;
+}
+
+Json fields_to_json(const ParticleFields& fields) {
+  Json json = {{"dimension", fields.dimension}, {"body", fields.body}};
+  for_each_particle_field(fields, [&](const char* name, const std::vector<double>& values, std::size_t) {
+    json[name] = numbers(rounded(values));
+  });
+  return json;
+}
+
+ParticleFields fields_from_json(const Json& json) {
+  ParticleFields fields;
+  fields.dimension = json.at("dimension").get<int>();
+  fields.body = json.at("body").get<std::vector<std::size_t>>();
+  if (fields.dimension < 1 || fields.dimension > max_dimension) {
+    throw std::runtime_error("a snapshot of unknown dimension");
+  }
+  for_each_particle_field(fields, [&](const char* name, std::vector<double>& values, std::size_t entries) {
+    values = numbers_from(json.at(name));
+    const bool optional = &values == &fields.strain || &values == &fields.deformation_gradient;
+    if (values.size() != fields.body.size() * entries && !(optional && values.empty())) {
+      throw std::runtime_error("snapshot of unequal lengths");
+    }
+  });
+  return fields;
+}
+
+Json snapshots_to_json(const std::vector<Snapshot>& snapshots) {
+  Json json = Json::array();
+  for (const Snapshot& snapshot : snapshots) {
+    json.push_back({{"moment", snapshot.moment},
+                    {"time", number(snapshot.time)},
+                    {"fields", fields_to_json(snapshot.fields)}});
+  }
+  return json;
+}
+
+std::vector<Snapshot> snapshots_from_json(const Json& json) {
+  if (!json.is_array()) throw std::runtime_error("not an array of snapshots");
+  std::vector<Snapshot> snapshots;
+  for (const Json& entry : json) {
+    snapshots.push_back({.moment = entry.at("moment").get<std::string>(),
+                         .time = number_from(entry.at("time")),
+                         .fields = fields_from_json(entry.at("fields"))});
+  }
+  return snapshots;
+}
+
+std::string moment_of(const SnapshotRequest& request) {
+  switch (request.when) {
+    case SnapshotRequest::When::time:
+      return fmt::format("t = {:.6g} s", request.time);
+    case SnapshotRequest::When::passing:
+      return fmt::format("{} = {:.6g} mm", request.probe, request.value * 1e3);
+    case SnapshotRequest::When::end:
+      break;
+  }
+  return "end";
+}
+
+/// Whether the last of the values is the first to reach `value` or to lie beyond it, seen from the first.
+bool has_passed(const std::vector<double>& values, double value) {
+  const double from = values.front() - value, to = values.back() - value;
+  return to == 0.0 || (from > 0.0 && to < 0.0) || (from < 0.0 && to > 0.0);
+}
+
+// ---- run ----
 
 /// One component of every particle, from a field stored particle by particle.
 std::vector<double> component_of(const std::vector<double>& field, std::size_t particles,
@@ -170,85 +281,26 @@ std::vector<double> component_of(const std::vector<double>& field, std::size_t p
   return values;
 }
 
-std::size_t nearest_particle(const ParticleFields& fields, const PerAxis& place) {
-  const auto dimension = static_cast<std::size_t>(fields.dimension);
-  const std::size_t particles = fields.mass.size();
-  std::size_t nearest = 0;
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t p = 0; p < particles; ++p) {
-    double distance = 0.0;
-    for (std::size_t axis = 0; axis < dimension; ++axis) {
-      const double offset = fields.initial_position[p * dimension + axis] - place[axis];
-      distance += offset * offset;
-    }
-    if (distance < least) {
-      least = distance;
-      nearest = p;
-    }
-  }
-  return nearest;
-}
-
-double quantity_at(const ParticleFields& fields, const std::string& quantity, std::size_t particle,
-                   std::size_t component) {
-  const std::size_t particles = fields.mass.size();
-  const auto entry = [&](const std::vector<double>& field) {
-    return field[particle * (field.size() / particles) + component];
-  };
-  if (quantity == "displacement") return entry(fields.displacement);
-  if (quantity == "velocity") return entry(fields.velocity);
-  if (quantity == "stress") return entry(fields.stress);
-  throw std::invalid_argument("a history probe cannot record '" + quantity + "'");
-}
-
-/// A probe at work: which particle it follows and when it is due.
-class Sampler {
- public:
-  Sampler(const HistoryProbe& probe, const ParticleFields& start)
-      : history_{.id = probe.id, .quantity = probe.quantity, .time = {}, .value = {}},
-        every_(probe.every),
-        particle_(nearest_particle(start, probe.at)) {
-    if (!(every_ > 0.0))
-      throw std::invalid_argument("the sampling interval of a history probe must be positive");
-    if (start.mass.empty()) throw std::invalid_argument("a history probe needs a particle");
-  }
-
-  /// The step that ends at `time` is the nearest to the next multiple of the interval, or past it. Never
-  /// twice at one time, however the rounding falls.
-  bool due(double time, double time_step) const {
-    return time + 0.5 * time_step >= next_ && time > history_.time.back();
-  }
-
-  void sample(const ParticleFields& fields, double time, double time_step) {
-    if (!history_.time.empty() && history_.time.back() == time) return;
-    history_.time.push_back(time);
-    history_.value.push_back(quantity_at(fields, history_.quantity, particle_, along_column(fields)));
-    next_ = every_ * (std::floor((time + 0.5 * time_step) / every_) + 1.0);
-  }
-
-  History history() && { return std::move(history_); }
-
- private:
-  History history_;
-  double every_;
-  std::size_t particle_;
-  double next_ = 0.0;
-};
-
-/// Steps a simulation to its end, with its probes, and measures what the steps cost.
+/// Steps a simulation to its end, with its probes and snapshots, and measures what the steps cost.
 class Recorder {
  public:
   Recorder(const Case& definition, const RunRequest& request, const Pulse& pulse)
-      : simulation_(request.scene), pulse_(pulse), start_(simulation_.particles()) {
-    for (const HistoryProbe& probe : definition.probes) samplers_.emplace_back(probe, start_);
-    for (Sampler& sampler : samplers_) sampler.sample(start_, simulation_.time(), simulation_.time_step());
+      : scene_(request.scene),
+        simulation_(request.scene),
+        pulse_(pulse),
+        start_(simulation_.particles()),
+        pending_(definition.snapshots) {
+    const Observation now(simulation_);
+    for (const HistoryProbe& probe : definition.probes) samplers_.emplace_back(probe, scene_, now);
+    for (Sampler& sampler : samplers_) sampler.sample(now, simulation_.time_step());
+    take_snapshots(now);
   }
 
   Record run() {
     const std::int64_t steps_per_pulse = std::max<std::int64_t>(
         1, particle_steps_per_pulse / std::max<std::int64_t>(1, simulation_.particle_count()));
     while (advance(steps_per_pulse)) {
-      sample_due();
+      observe();
       beat();
     }
     beat();
@@ -258,31 +310,72 @@ class Recorder {
  private:
   using Clock = std::chrono::steady_clock;
 
-  /// Steps until a probe is due, a pulse is, or the run has ended (then false). The clock runs only here.
+  /// Steps until a probe or snapshot is due, a pulse is, or the run has ended (then false). The clock runs
+  /// only here.
   bool advance(std::int64_t most_steps) {
     const auto began = Clock::now();
     bool going_on = true;
-    for (std::int64_t step = 0; step < most_steps && going_on && !sample_is_due(); ++step) {
+    for (std::int64_t step = 0; step < most_steps && going_on && !something_is_due(); ++step) {
       going_on = simulation_.advance();
     }
     wall_ += Clock::now() - began;
     return going_on;
   }
 
-  bool sample_is_due() const {
-    for (const Sampler& sampler : samplers_) {
-      if (sampler.due(simulation_.time(), simulation_.time_step())) return true;
-    }
-    return false;
+  bool is_due(const Sampler& sampler) const {
+    return sampler.due(simulation_.time(), simulation_.time_step());
   }
 
-  void sample_due() {
-    if (!sample_is_due()) return;
-    const ParticleFields fields = simulation_.particles();
+  bool is_due(const SnapshotRequest& snapshot) const {
+    // The slack is for the rounding of the time, a product of step and time step.
+    return snapshot.when == SnapshotRequest::When::time &&
+           simulation_.time() >= snapshot.time - 1e-6 * simulation_.time_step();
+  }
+
+  bool something_is_due() const {
+    const auto due = [&](const auto& each) { return is_due(each); };
+    return std::any_of(samplers_.begin(), samplers_.end(), due) ||
+           std::any_of(pending_.begin(), pending_.end(), due);
+  }
+
+  void observe() {
+    if (!something_is_due()) return;
+    const Observation now(simulation_);
     for (Sampler& sampler : samplers_) {
-      if (sampler.due(simulation_.time(), simulation_.time_step())) {
-        sampler.sample(fields, simulation_.time(), simulation_.time_step());
-      }
+      if (is_due(sampler)) sampler.sample(now, simulation_.time_step());
+    }
+    take_snapshots(now);
+  }
+
+  bool has_passed_probe(const SnapshotRequest& request) const {
+    if (request.when != SnapshotRequest::When::passing) return false;
+    const auto sampler = std::find_if(samplers_.begin(), samplers_.end(),
+                                      [&](const Sampler& s) { return s.history().id == request.probe; });
+    if (sampler == samplers_.end())
+      throw std::invalid_argument("a snapshot waits for a probe there is not: '" + request.probe + "'");
+    return has_passed(sampler->history().value, request.value);
+  }
+
+  void take(const SnapshotRequest& request, const Observation& now) {
+    // Rounded here, so that a record judges the same before and after it has been stored.
+    snapshots_.push_back({moment_of(request), now.time(), rounded(now.particles())});
+  }
+
+  void take_snapshots(const Observation& now) {
+    std::erase_if(pending_, [&](const SnapshotRequest& request) {
+      if (!is_due(request) && !has_passed_probe(request)) return false;
+      take(request, now);
+      return true;
+    });
+  }
+
+  /// The moments left that the end is one of: itself, and a time that the last step is the nearest to.
+  void take_last_snapshots(const Observation& now) {
+    take_snapshots(now);
+    for (const SnapshotRequest& request : pending_) {
+      const bool reached = request.when == SnapshotRequest::When::time &&
+                           request.time <= now.time() + 0.5 * simulation_.time_step();
+      if (reached || request.when == SnapshotRequest::When::end) take(request, now);
     }
   }
 
@@ -293,7 +386,8 @@ class Recorder {
   }
 
   Record result() {
-    const ParticleFields end = simulation_.particles();
+    const Observation now(simulation_);
+    const ParticleFields& end = now.particles();
     Record record;
     record.outcome = simulation_.outcome();
     record.time_step = simulation_.time_step();
@@ -303,10 +397,10 @@ class Recorder {
     record.cell_crossings = simulation_.cell_crossings();
     record.relative_mass_change = mass_change(end);
     record.profile = profile_of(end);
-    for (Sampler& sampler : samplers_) {
-      sampler.sample(end, simulation_.time(), simulation_.time_step());
-      record.histories.push_back(std::move(sampler).history());
-    }
+    for (Sampler& sampler : samplers_) sampler.sample(now, simulation_.time_step());
+    take_last_snapshots(now);
+    record.snapshots = std::move(snapshots_);
+    for (Sampler& sampler : samplers_) record.histories.push_back(std::move(sampler).history());
     record.digest = digest_of(end, record);
     record.cost = {.wall_seconds = std::chrono::duration<double>(wall_).count(),
                    .steps = simulation_.steps(),
@@ -314,10 +408,22 @@ class Recorder {
     return record;
   }
 
+  /// The factor by which a ramp has changed a body's density. The particles carry the density of the last
+  /// step's beginning.
+  double growth_of(const Body& body) const {
+    if (!body.density_ramp || simulation_.steps() == 0) return 1.0;
+    const double time = static_cast<double>(simulation_.steps() - 1) * simulation_.time_step();
+    return body.density_at(time) / body.density;
+  }
+
+  /// Against what the density ramps have made of the mass at the start.
   double mass_change(const ParticleFields& end) const {
-    const double before = std::accumulate(start_.mass.begin(), start_.mass.end(), 0.0);
-    const double after = std::accumulate(end.mass.begin(), end.mass.end(), 0.0);
-    return (after - before) / before;
+    double expected = 0.0;
+    for (std::size_t p = 0; p < start_.mass.size(); ++p) {
+      expected += start_.mass[p] * growth_of(scene_.bodies[start_.body[p]]);
+    }
+    const double found = std::accumulate(end.mass.begin(), end.mass.end(), 0.0);
+    return (found - expected) / expected;
   }
 
   static Profile profile_of(const ParticleFields& fields) {
@@ -347,13 +453,27 @@ class Recorder {
     return hash.digits();
   }
 
+  const Scene& scene_;
   Simulation simulation_;
   const Pulse& pulse_;
   ParticleFields start_;
   std::vector<Sampler> samplers_;
+  std::vector<SnapshotRequest> pending_;
+  std::vector<Snapshot> snapshots_;
   Clock::duration wall_{};
   std::int64_t reported_steps_ = 0;
 };
+
+/// What a probe is told apart by. What has its default is left out.
+Json essence_of(const HistoryProbe& probe, const Scene& scene) {
+  Json json = {{"id", probe.id}, {"quantity", probe.quantity}, {"at", probe.at}, {"every", probe.every}};
+  const std::string along_last = scene.dimension == 1 ? "x" : "y";
+  const std::string otherwise = probe.quantity == "stress" ? along_last + along_last : along_last;
+  if (!probe.component.empty() && probe.component != otherwise) json["component"] = probe.component;
+  if (probe.target != ProbeTarget::particle) json["target"] = static_cast<int>(probe.target);
+  if (!probe.of.empty()) json["of"] = probe.of;
+  return json;
+}
 
 // ---- files ----
 
@@ -440,7 +560,8 @@ Json to_json(const Record& record) {
             {"steps", record.cost.steps},
             {"particle_steps", record.cost.particle_steps}}},
           {"profile", profile_to_json(record.profile)},
-          {"histories", histories_to_json(record.histories)}};
+          {"histories", histories_to_json(record.histories)},
+          {"snapshots", snapshots_to_json(record.snapshots)}};
 }
 
 Record record_from_json(const Json& json) {
@@ -467,23 +588,28 @@ Record record_from_json(const Json& json) {
                  .particle_steps = cost.at("particle_steps").get<std::int64_t>()};
   record.profile = profile_from_json(json.at("profile"));
   record.histories = histories_from_json(json.at("histories"));
+  record.snapshots = snapshots_from_json(json.at("snapshots"));
   return record;
 }
 
 Record simulate(const Case& definition, const RunRequest& request, const Pulse& pulse) {
   Record record = Recorder(definition, request, pulse).run();
   record.case_id = definition.id;
-  record.input_hash = input_hash(request, definition.probes);
+  record.input_hash = input_hash(definition, request);
   record.program_hash = program_hash();
   record.revision = build_facts().revision;
   return record;
 }
 
-std::string input_hash(const RunRequest& request, const std::vector<HistoryProbe>& probes) {
+std::string input_hash(const Case& definition, const RunRequest& request) {
   Json input = {{"schema", record_schema}, {"scene", request.scene_text}, {"probes", Json::array()}};
-  for (const HistoryProbe& probe : probes) {
-    input["probes"].push_back(
-        {{"id", probe.id}, {"quantity", probe.quantity}, {"at", probe.at}, {"every", probe.every}});
+  for (const HistoryProbe& probe : definition.probes)
+    input["probes"].push_back(essence_of(probe, request.scene));
+  for (const SnapshotRequest& snapshot : definition.snapshots) {
+    input["snapshots"].push_back({{"when", static_cast<int>(snapshot.when)},
+                                  {"time", snapshot.time},
+                                  {"probe", snapshot.probe},
+                                  {"value", snapshot.value}});
   }
   return hash_of(input.dump());
 }

@@ -50,7 +50,7 @@ struct Cost {
 /// What a run did: everything judged later is computed from this, never from the simulation itself.
 struct Record {
   std::string case_id;
-  std::string input_hash;    ///< of the resolved scene and probes
+  std::string input_hash;    ///< of the resolved scene, probes and snapshots
   std::string program_hash;  ///< of the program that ran it
   std::string revision;      ///< of the source tree that program was built from
   int threads = 1;           ///< of the pool the run was part of; the run itself uses one
@@ -61,7 +61,7 @@ struct Record {
   double unbalanced_force_ratio = 0.0;
   double kinetic_energy_ratio = 0.0;
   std::int64_t cell_crossings = 0;    ///< particle centres that changed cell, counted every step
-  double relative_mass_change = 0.0;  ///< of the sum over the particles, end against start
+  double relative_mass_change = 0.0;  ///< of the sum over the particles, end against start and density ramps
   std::string digest;                 ///< of the bits of the final state; equal digests mean equal bits
   std::string repeat_digest;  ///< the same of the repeat on another number of threads; empty without one
   Profile profile;
@@ -93,12 +93,14 @@ class Abandoned : public std::runtime_error {
 };
 
 /// Runs one request of a case to its end and records it, probes included: each samples the first step, the
-/// step nearest to every multiple of its interval, and the last step. `cost.wall_seconds` covers the steps
-/// only. Throws SceneError, std::bad_alloc, and Abandoned when `pulse` says so.
+/// step nearest to every multiple of its interval, and the last step. A snapshot whose moment does not come is
+/// left out. `cost.wall_seconds` covers the steps only. Throws SceneError, std::bad_alloc, and Abandoned when
+/// `pulse` says so.
 Record simulate(const Case& definition, const RunRequest& request, const Pulse& pulse = {});
 
-/// Hash of all that decides what a run computes and what is kept of it; 16 hexadecimal digits.
-std::string input_hash(const RunRequest& request, const std::vector<HistoryProbe>& probes);
+/// Hash of all that decides what a run computes and what is kept of it: scene, probes and snapshots; 16
+/// hexadecimal digits.
+std::string input_hash(const Case& definition, const RunRequest& request);
 
 /// Hash of the program that is running; 16 hexadecimal digits, read once.
 std::string program_hash();

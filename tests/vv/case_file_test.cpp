@@ -10,8 +10,10 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
+#include "reference/manufactured.hpp"
 #include "vv/case_schema.hpp"
 #include "vv/quantity.hpp"
 
@@ -413,6 +415,252 @@ TEST(CaseFile, refuses_soil_without_its_parameters) {
                  "from 0 to the friction angle, 20 deg", "21 deg");
 }
 
+/// A footing on ground that becomes heavier, with a surcharge beside it.
+Json footing_case() {
+  Json text = soil_case();
+  text.erase("sweep");
+  text.erase("notes");
+  Json& scene = text["scene"];
+  scene["time_step"] = {{"stable_fraction", 0.2}};
+  scene["termination"] = {{"type", "at_time"}, {"time", "2 s"}};
+  scene["sums_strain"] = true;
+  scene["gravity"]["acceleration"] = {"0 m/s^2", "-9.8 m/s^2"};
+  scene["grid"]["edges"]["x_lower"] = "roller";
+  Json& body = scene["bodies"][0];
+  body["upper"] = {"1 m", "50 cm"};
+  body["density_ramp"] = {{"final_density", "2 t/m^3"}, {"start", "100 ms"}, {"duration", "1 s"}};
+  body["initial_stress"] = {{"type", "geostatic"}, {"surface", "0.5 m"}, {"k0", 0.5}};
+  Json second = body;
+  second["name"] = "plate";
+  second["lower"] = {"0 m", "0.6 m"};
+  second["upper"] = {"1 m", "1.2 m"};
+  second.erase("velocity");
+  second.erase("density_ramp");
+  second["ring"] = {{"center", {"0.5 m", "0.9 m"}}, {"inner_radius", "10 cm"}, {"outer_radius", "30 cm"}};
+  second["initial_stress"] = {{"type", "uniform"}, {"xx", "-10 kPa"}, {"xy", "1 kPa"}};
+  second["material"] = {{"law", "linear_elastic"}, {"youngs_modulus", "1 MPa"}, {"poissons_ratio", 0.3}};
+  scene["bodies"].push_back(second);
+  scene["rigid_bodies"] = Json::parse(R"([
+    { "name": "footing", "lower": ["0 m", "0.5 m"], "upper": ["0.2 m", "0.6 m"], "constrains": ["y"],
+      "velocity": ["0 m/s", "-1 mm/s"], "angular_velocity": "0.5 rad/s", "start": "10 ms", "ramp": "0.1 s" },
+    { "name": "plug", "lower": ["0.4 m", "0.8 m"], "upper": ["0.6 m", "1 m"] }])");
+  scene["surface_loads"] = Json::parse(R"([
+    { "body": "lower", "edge": "y_upper", "from": "0.2 m", "to": "0.5 m", "traction": ["0 Pa", "-2 kPa"], "ramp": "0.2 s" }])");
+  text["probes"] = Json::parse(R"([
+    { "id": "corner", "quantity": "stress", "component": "zz", "at": ["0.5 m", "0.5 m"], "every": "0.1 s" },
+    { "id": "settlement", "quantity": "displacement", "of": "footing", "every": "0.01 s" },
+    { "id": "pressure", "quantity": "reaction", "of": "footing", "every": "0.01 s" },
+    { "id": "mean", "quantity": "velocity", "of": "plate", "component": "x", "every": "0.01 s" },
+    { "id": "weight", "quantity": "weight", "of": "lower", "every": "0.01 s" },
+    { "id": "momentum", "quantity": "momentum", "every": "0.01 s" },
+    { "id": "energy", "quantity": "kinetic_energy", "every": "0.01 s" }])");
+  text["snapshots"] = Json::parse(
+      R"([{ "time": "0 s" }, { "time": "0.1 s" }, { "probe": "settlement", "reaches": "-5 mm" }, { "end": true }])");
+  text["figures"] = Json::parse(R"([
+    { "id": "strain", "kind": "fields", "quantity": "max_shear_strain", "caption": "Strain." },
+    { "id": "load", "kind": "curves", "quantity": "pressure", "references": [], "caption": "Pressure." }])");
+  return text;
+}
+
+TEST(CaseFile, reads_what_bodies_start_from) {
+  const Scene scene = parsed(footing_case()).runs.front().scene;
+  const Body& ground = scene.bodies[0];
+  ASSERT_TRUE(ground.density_ramp);
+  EXPECT_EQ(ground.density_ramp->final_density, 2000.0);
+  EXPECT_EQ(ground.density_ramp->start, 0.1);
+  EXPECT_EQ(ground.density_ramp->duration, 1.0);
+  ASSERT_TRUE(ground.initial_stress);
+  EXPECT_EQ(std::get<GeostaticStress>(*ground.initial_stress).surface, 0.5);
+  EXPECT_EQ(std::get<GeostaticStress>(*ground.initial_stress).k0, 0.5);
+  EXPECT_FALSE(ground.ring);
+  const Body& plate = scene.bodies[1];
+  ASSERT_TRUE(plate.ring);
+  EXPECT_EQ(plate.ring->center, (PerAxis{0.5, 0.9}));
+  EXPECT_EQ(plate.ring->inner_radius, 0.1);
+  EXPECT_EQ(plate.ring->outer_radius, 0.3);
+  const UniformStress& stress = std::get<UniformStress>(*plate.initial_stress);
+  EXPECT_EQ(stress.xx, -1e4);
+  EXPECT_EQ(stress.yy, 0.0);
+  EXPECT_EQ(stress.zz, 0.0);
+  EXPECT_EQ(stress.xy, 1e3);
+  EXPECT_FALSE(plate.density_ramp);
+}
+
+TEST(CaseFile, reads_rigid_bodies_and_surface_loads) {
+  const Scene scene = parsed(footing_case()).runs.front().scene;
+  EXPECT_TRUE(scene.sums_strain);
+  ASSERT_EQ(scene.rigid_bodies.size(), 2u);
+  const RigidBody& footing = scene.rigid_bodies[0];
+  EXPECT_EQ(footing.name, "footing");
+  EXPECT_EQ(footing.lower, (PerAxis{0.0, 0.5}));
+  EXPECT_EQ(footing.upper, (PerAxis{0.2, 0.6}));
+  EXPECT_EQ(footing.constrains, (std::array<bool, 2>{false, true}));
+  EXPECT_EQ(footing.velocity, (PerAxis{0.0, -0.001}));
+  EXPECT_EQ(footing.angular_velocity, 0.5);
+  EXPECT_EQ(footing.start, 0.01);
+  EXPECT_EQ(footing.ramp, 0.1);
+  const RigidBody& plug = scene.rigid_bodies[1];
+  EXPECT_EQ(plug.constrains, (std::array<bool, 2>{true, true}));
+  EXPECT_EQ(plug.velocity, (PerAxis{0.0, 0.0}));
+  EXPECT_EQ(plug.angular_velocity, 0.0);
+  EXPECT_EQ(plug.start, 0.0);
+  EXPECT_EQ(plug.ramp, 0.0);
+  ASSERT_EQ(scene.surface_loads.size(), 1u);
+  const SurfaceLoad& load = scene.surface_loads[0];
+  EXPECT_EQ(load.body, "lower");
+  EXPECT_EQ(load.axis, 1);
+  EXPECT_EQ(load.side, 1);
+  EXPECT_EQ(load.begin, 0.2);
+  EXPECT_EQ(load.end, 0.5);
+  EXPECT_EQ(load.traction, (PerAxis{0.0, -2000.0}));
+  EXPECT_EQ(load.ramp, 0.2);
+}
+
+TEST(CaseFile, reads_every_edge_of_a_surface_load) {
+  const std::vector<std::tuple<const char*, int, int>> edges = {
+      {"x_lower", 0, 0}, {"x_upper", 0, 1}, {"y_lower", 1, 0}, {"y_upper", 1, 1}};
+  for (const auto& [name, axis, side] : edges) {
+    Json text = footing_case();
+    text["scene"]["surface_loads"][0]["edge"] = name;
+    const SurfaceLoad load = parsed(text).runs.front().scene.surface_loads[0];
+    EXPECT_EQ(load.axis, axis) << name;
+    EXPECT_EQ(load.side, side) << name;
+  }
+}
+
+TEST(CaseFile, reads_probes_of_every_target) {
+  const Case read = parsed(footing_case());
+  struct Expected {
+    const char *id, *component, *of;
+    ProbeTarget target;
+  };
+  const std::vector<Expected> expected = {{"corner", "zz", "", ProbeTarget::particle},
+                                          {"settlement", "y", "footing", ProbeTarget::rigid_body},
+                                          {"pressure", "y", "footing", ProbeTarget::rigid_body},
+                                          {"mean", "x", "plate", ProbeTarget::body},
+                                          {"weight", "", "lower", ProbeTarget::body},
+                                          {"momentum", "y", "", ProbeTarget::everything},
+                                          {"energy", "", "", ProbeTarget::everything}};
+  ASSERT_EQ(read.probes.size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_EQ(read.probes[i].id, expected[i].id);
+    EXPECT_EQ(read.probes[i].component, expected[i].component) << expected[i].id;
+    EXPECT_EQ(read.probes[i].of, expected[i].of) << expected[i].id;
+    EXPECT_EQ(read.probes[i].target, expected[i].target) << expected[i].id;
+  }
+  EXPECT_EQ(parsed(valid_case()).probes[0].component, "x");
+  Json text = valid_case();
+  text["probes"][0]["quantity"] = "stress";
+  EXPECT_EQ(parsed(text).probes[0].component, "xx");
+  text = soil_case();
+  text["probes"][0]["quantity"] = "stress";
+  EXPECT_EQ(parsed(text).probes[0].component, "yy");
+}
+
+TEST(CaseFile, reads_snapshots_and_their_figures) {
+  using When = SnapshotRequest::When;
+  const Case read = parsed(footing_case());
+  EXPECT_EQ(read.snapshots, (std::vector<SnapshotRequest>{{When::time, 0.0, "", 0.0},
+                                                          {When::time, 0.1, "", 0.0},
+                                                          {When::passing, 0.0, "settlement", -0.005},
+                                                          {When::end, 0.0, "", 0.0}}));
+  EXPECT_EQ(read.figures[0].kind, "fields");
+  EXPECT_EQ(read.figures[0].quantity, "max_shear_strain");
+  EXPECT_EQ(read.figures[1].kind, "curves");
+  EXPECT_EQ(read.figures[1].quantity, "pressure");
+  EXPECT_TRUE(parsed(valid_case()).snapshots.empty());
+}
+
+TEST(CaseFile, sweeps_over_several_places_at_once) {
+  Json text = valid_case();
+  text["sweep"][0]["with"] = Json::parse(
+      R"({ "/scene/time_step/stable_fraction": [0.2, 0.1, 0.1], "/scene/bodies/0/particles_per_cell": [[2], [4], [1]] })");
+  const Case read = parsed(text);
+  ASSERT_EQ(read.runs.size(), 6u);
+  const std::vector<double> fractions = {0.2, 0.2, 0.1, 0.1, 0.1, 0.1};
+  const std::vector<int> per_cell = {2, 2, 4, 4, 1, 1};
+  for (std::size_t i = 0; i < read.runs.size(); ++i) {
+    const RunRequest& run = read.runs[i];
+    EXPECT_EQ(std::get<StableFraction>(run.scene.time_step).fraction, fractions[i]);
+    EXPECT_EQ(run.scene.bodies[0].particles_per_cell[0], per_cell[i]);
+    EXPECT_EQ(run.scene_text["bodies"][0]["particles_per_cell"][0], per_cell[i]);
+    ASSERT_EQ(run.parameters.size(), 2u) << "what follows along does not name the run";
+    EXPECT_EQ(run.parameters[0].first, "/scene/grid/cell_size");
+  }
+}
+
+/// A bar that is driven through a standing wave.
+Json wave_case() {
+  Json text = two_bodies();
+  text.erase("sweep");
+  Json& scene = text["scene"];
+  scene["bodies"].erase(1);
+  scene["bodies"][0]["upper"] = {"1 m"};
+  scene["bodies"][0]["material"] = {
+      {"law", "neo_hookean"}, {"youngs_modulus", "10 MPa"}, {"poissons_ratio", 0.3}};
+  scene["driven_motion"] = {{"solution", "standing_wave"}, {"amplitude", "5 cm"}, {"length", "1 m"}};
+  scene["gravity"]["level"] = 0;
+  scene["termination"] = {{"type", "at_time"}, {"time", "0.02 s"}};
+  text["probes"] = Json::parse(R"([{ "id": "energy", "quantity": "strain_energy", "every": "1 ms" }])");
+  return text;
+}
+
+TEST(CaseFile, reads_a_driven_motion) {
+  const Case read = parsed(wave_case());
+  const RunRequest& run = read.runs.front();
+  ASSERT_TRUE(run.motion);
+  ASSERT_TRUE(run.scene.driven_motion);
+  EXPECT_EQ(std::get<NeoHookean>(run.scene.bodies[0].material).youngs_modulus, 1e7);
+  EXPECT_EQ(std::get<NeoHookean>(run.scene.bodies[0].material).poissons_ratio, 0.3);
+  const double quarter = 0.005;  // of the period 2 L / c with c = sqrt(1e7 / 1000) m/s
+  EXPECT_NEAR(run.motion->displacement({0.5, 0.0}, quarter)[0], 0.05, 1e-15);
+  const double speed = 0.05 * std::acos(-1.0) * 100.0;
+  EXPECT_NEAR(run.scene.driven_motion->velocity({0.5, 0.0}, 0.0)[0], speed, 1e-12);
+  EXPECT_EQ(run.scene.driven_motion->body_force({0.3, 0.0}, 0.001)[0],
+            run.motion->body_force({0.3, 0.0}, 0.001)[0]);
+  EXPECT_FALSE(parsed(valid_case()).runs.front().motion);
+  EXPECT_FALSE(parsed(valid_case()).runs.front().scene.driven_motion);
+}
+
+/// A square that is driven in two dimensions.
+Json driven_square(const Json& motion) {
+  Json text = soil_case();
+  text.erase("sweep");
+  text.erase("probes");
+  Json& scene = text["scene"];
+  scene["objectivity"] = "none";
+  scene["bodies"][0].erase("velocity");
+  scene["bodies"][0]["material"] = {
+      {"law", "neo_hookean"}, {"youngs_modulus", "10 MPa"}, {"poissons_ratio", 0.0}};
+  scene["driven_motion"] = motion;
+  return text;
+}
+
+TEST(CaseFile, reads_every_driven_motion_with_its_parameters) {
+  const Json ring = {{"solution", "expanding_ring"},     {"amplitude", "1 cm"},
+                     {"angular_frequency", "100 rad/s"}, {"inner_radius", "0.4 m"},
+                     {"outer_radius", "0.6 m"},          {"center", {"1 m", "2 m"}}};
+  const auto motion_of = [](const Json& motion) { return parsed(driven_square(motion)).runs.front().motion; };
+  // The inner face is displaced most, a quarter of a period after the start.
+  const double quarter = std::acos(-1.0) / 200;
+  EXPECT_NEAR(std::abs(motion_of(ring)->displacement({1.4, 2.0}, quarter)[0]), 0.01, 1e-12);
+  const Json vortex = {
+      {"solution", "generalised_vortex"}, {"amplitude", "90 deg"},   {"period", "1 s"},
+      {"inner_radius", "0.4 m"},          {"outer_radius", "0.6 m"}, {"center", {"1 m", "2 m"}}};
+  const auto turned = motion_of(vortex)->displacement({1.5, 2.0}, 0.25);
+  EXPECT_NEAR(turned[0], -0.5, 1e-12);
+  EXPECT_NEAR(turned[1], 0.5, 1e-12);
+  const Json rotation = {
+      {"solution", "rotation"}, {"angular_velocity", "2 rad/s"}, {"center", {"1 m", "2 m"}}};
+  EXPECT_NEAR(motion_of(rotation)->velocity({1.5, 2.0}, 0.0)[1], 1.0, 1e-12);
+  const Json square = {{"solution", "axis_aligned"}, {"amplitude", "1 cm"}, {"length", "2 m"}};
+  EXPECT_NEAR(motion_of(square)->displacement({1.0, 0.0}, 0.01)[0], 0.01, 1e-12);
+  Json bar = wave_case();
+  bar["scene"]["driven_motion"]["solution"] = "vibrating_bar";
+  bar["scene"]["bodies"][0]["material"]["law"] = "linear_elastic";
+  EXPECT_TRUE(parsed(bar).runs.front().motion);
+}
+
 // ---- what is refused
 // ----------------------------------------------------------------------------------------------
 
@@ -611,6 +859,33 @@ const std::vector<Malformed>& malformed_cases() {
        "a value with which /scene/termination/deadline is a time after gravity has settled at 6 s",
        "\"6 s\", which makes it 5 s", Schema::cannot_tell},
 
+      // Sweeps that change several places at once.
+      {R"([{"op": "add", "path": "/sweep/0/with", "value": {}}])", "/sweep/0/with",
+       "an object with at least one parameter", "an empty object", Schema::refuses},
+      {R"([{"op": "add", "path": "/sweep/0/with", "value": [0.1]}])", "/sweep/0/with", "an object",
+       "an array of 1", Schema::refuses},
+      {R"([{"op": "add", "path": "/sweep/0/with", "value": {"/scene/damping": [0.1, 0.2]}}])",
+       "/sweep/0/with/~1scene~1damping", "an array of 3, one value for each of the axis's values",
+       "an array of 2", Schema::cannot_tell},
+      {R"([{"op": "add", "path": "/sweep/0/with", "value": {"/scene/damping": 0.1}}])",
+       "/sweep/0/with/~1scene~1damping", "an array of at least one value", "0.1", Schema::refuses},
+      {R"([{"op": "add", "path": "/sweep/0/with", "value": {"/scene/dampin": [0.1, 0.2, 0.3]}}])",
+       "/sweep/0/with/~1scene~1dampin", "a JSON pointer to a value the scene has", "\"/scene/dampin\"",
+       Schema::cannot_tell},
+      {R"([{"op": "add", "path": "/sweep/0/with", "value": {"/title": ["a", "b", "c"]}}])",
+       "/sweep/0/with/~1title", "a JSON pointer to a value the scene has", "\"/title\"", Schema::refuses},
+      {R"([{"op": "add", "path": "/sweep/0/with", "value": {"/scene/grid": [1, 2, 3]}}])",
+       "/sweep/0/with/~1scene~1grid", "a parameter that no other axis changes",
+       "\"/scene/grid\", which /scene/grid/cell_size changes too", Schema::cannot_tell},
+      {R"([{"op": "add", "path": "/sweep/0/with", "value": {"/scene/scheme": ["mpm", "mpm", "mpm"]}}])",
+       "/sweep/1/parameter", "a parameter that no other axis changes",
+       "\"/scene/scheme\", which /scene/scheme changes too", Schema::cannot_tell},
+      {R"([{"op": "add", "path": "/sweep/0/with", "value": {"/scene/damping": [0.1, 0.2, 1.5]}}])",
+       "/sweep/0/with/~1scene~1damping/2", "from 0 to below 1", "1.5", Schema::cannot_tell},
+      {R"([{"op": "add", "path": "/sweep/0/with", "value": {"/scene/gravity/loading": [{"type": "step"}, {"type": "step"}, {"type": "ramp", "duration": "5 m"}]}}])",
+       "/sweep/0/with/~1scene~1gravity~1loading/2/duration", "a time such as", "\"5 m\", a length",
+       Schema::cannot_tell},
+
       // Probes.
       {R"([{"op": "replace", "path": "/probes/0/at/0", "value": "1.1 m"}])", "/probes/0/at",
        "a place within one particle spacing of a particle",
@@ -704,20 +979,323 @@ const std::vector<Malformed>& malformed_cases() {
   return all;
 }
 
-TEST(MalformedCase, is_refused_in_one_line_that_names_place_expected_and_found) {
-  for (const Malformed& malformed : malformed_cases()) {
+/// What turns the footing into a case that is refused.
+const std::vector<Malformed>& malformed_footings() {
+  static const std::vector<Malformed> all = {
+      // Bodies.
+      {R"([{"op": "replace", "path": "/scene/bodies/1/upper/1", "value": "1.4 m"}])",
+       "/scene/bodies/1/upper/1", "a body inside the grid, which ends at 1.2 m", "1.4 m",
+       Schema::cannot_tell},
+      {R"([{"op": "replace", "path": "/scene/bodies/1/lower/0", "value": "-0.1 m"}])",
+       "/scene/bodies/1/lower/0", "a body inside the grid, which begins at 0 m", "-0.1 m",
+       Schema::cannot_tell},
+      {R"([{"op": "replace", "path": "/scene/bodies/1/lower/1", "value": "0.4 m"}])", "/scene/bodies/1",
+       "a body clear of all others", "\"plate\", which overlaps \"lower\"", Schema::cannot_tell},
+      {R"([{"op": "remove", "path": "/scene/bodies/1/ring/center"}])", "/scene/bodies/1/ring/center",
+       "an array", "nothing: the key is missing", Schema::refuses},
+      {R"([{"op": "replace", "path": "/scene/bodies/1/ring/center", "value": ["0.5 m"]}])",
+       "/scene/bodies/1/ring/center", "an array of 2", "an array of 1", Schema::cannot_tell},
+      {R"([{"op": "remove", "path": "/scene/bodies/1/ring/outer_radius"}])",
+       "/scene/bodies/1/ring/outer_radius", "a length such as", "nothing: the key is missing",
+       Schema::refuses},
+      {R"([{"op": "replace", "path": "/scene/bodies/1/ring/outer_radius", "value": "5 cm"}])",
+       "/scene/bodies/1/ring/outer_radius", "0.1", "0.05", Schema::cannot_tell},
+      {R"([{"op": "replace", "path": "/scene/bodies/1/ring/inner_radius", "value": "-5 cm"}])",
+       "/scene/bodies/1/ring/inner_radius", "", "-0.05 m", Schema::refuses},
+      {R"([{"op": "add", "path": "/scene/bodies/1/ring/radius", "value": "5 cm"}])",
+       "/scene/bodies/1/ring/radius", "one of the keys center, inner_radius, outer_radius", "\"radius\"",
+       Schema::refuses},
+      {R"([{"op": "remove", "path": "/scene/bodies/0/density_ramp/final_density"}])",
+       "/scene/bodies/0/density_ramp/final_density", "a density such as", "nothing: the key is missing",
+       Schema::refuses},
+      {R"([{"op": "remove", "path": "/scene/bodies/0/density_ramp/duration"}])",
+       "/scene/bodies/0/density_ramp/duration", "a time such as", "nothing: the key is missing",
+       Schema::refuses},
+      {R"([{"op": "replace", "path": "/scene/bodies/0/density_ramp/duration", "value": "0 s"}])",
+       "/scene/bodies/0/density_ramp/duration", "above zero", "0 s", Schema::refuses},
+      {R"([{"op": "replace", "path": "/scene/bodies/0/density_ramp/start", "value": "-1 s"}])",
+       "/scene/bodies/0/density_ramp/start", "zero or above", "-1 s", Schema::refuses},
+      {R"([{"op": "replace", "path": "/scene/bodies/0/density_ramp/final_density", "value": "20 kN/m^3"}])",
+       "/scene/bodies/0/density_ramp/final_density", "a density such as", "a unit weight", Schema::refuses},
+      {R"([{"op": "remove", "path": "/scene/bodies/0/initial_stress/type"}])",
+       "/scene/bodies/0/initial_stress/type", "one of uniform, geostatic", "nothing: the key is missing",
+       Schema::refuses},
+      {R"([{"op": "replace", "path": "/scene/bodies/0/initial_stress/type", "value": "geostatical"}])",
+       "/scene/bodies/0/initial_stress/type", "one of uniform, geostatic", "(did you mean \"geostatic\"?)",
+       Schema::refuses},
+      {R"([{"op": "remove", "path": "/scene/bodies/0/initial_stress/k0"}])",
+       "/scene/bodies/0/initial_stress/k0", "a number", "nothing: the key is missing", Schema::refuses},
+      {R"([{"op": "remove", "path": "/scene/bodies/0/initial_stress/surface"}])",
+       "/scene/bodies/0/initial_stress/surface", "a length such as", "nothing: the key is missing",
+       Schema::refuses},
+      {R"([{"op": "replace", "path": "/scene/bodies/0/initial_stress/surface", "value": "0.4 m"}])",
+       "/scene/bodies/0/initial_stress/surface", "not below the body's upper edge", "0.4 m",
+       Schema::cannot_tell},
+      {R"([{"op": "add", "path": "/scene/bodies/0/initial_stress/xx", "value": "1 Pa"}])",
+       "/scene/bodies/0/initial_stress/xx", "one of the keys type, surface, k0", "\"xx\"", Schema::refuses},
+      {R"([{"op": "add", "path": "/scene/bodies/1/initial_stress/k0", "value": 1}])",
+       "/scene/bodies/1/initial_stress/k0", "one of the keys type, xx, yy, zz, xy", "\"k0\"",
+       Schema::refuses},
+      {R"([{"op": "replace", "path": "/scene/bodies/1/initial_stress/xx", "value": "-10 kN"}])",
+       "/scene/bodies/1/initial_stress/xx", "a pressure such as", "\"-10 kN\"", Schema::refuses},
+      {R"([{"op": "replace", "path": "/scene/bodies/1/material/law", "value": "neo_hookean"}])",
+       "/scene/bodies/1/initial_stress", "no initial stress with a law", "one", Schema::cannot_tell},
+      {R"([{"op": "replace", "path": "/scene/bodies/1/material/law", "value": "neo_hookian"}])",
+       "/scene/bodies/1/material/law", "linear_elastic, zhang_elastic, mohr_coulomb, neo_hookean",
+       "(did you mean \"neo_hookean\"?)", Schema::refuses},
+      {R"([{"op": "remove", "path": "/scene/bodies/1/initial_stress"}, {"op": "replace", "path": "/scene/bodies/1/material", "value": {"law": "neo_hookean", "youngs_modulus": "1 MPa"}}])",
+       "/scene/bodies/1/material/poissons_ratio", "a number", "nothing: the key is missing", Schema::refuses},
+
+      // Rigid bodies.
+      {R"([{"op": "replace", "path": "/scene/rigid_bodies", "value": []}])", "/scene/rigid_bodies",
+       "an array of at least one value", "an empty array", Schema::refuses},
+      {R"([{"op": "remove", "path": "/scene/rigid_bodies/0/name"}])", "/scene/rigid_bodies/0/name", "a name",
+       "nothing: the key is missing", Schema::refuses},
+      {R"([{"op": "replace", "path": "/scene/rigid_bodies/0/name", "value": "plate"}])",
+       "/scene/rigid_bodies/0/name", "a name no other body has", "\"plate\"", Schema::cannot_tell},
+      {R"([{"op": "remove", "path": "/scene/rigid_bodies/0/lower"}])", "/scene/rigid_bodies/0/lower",
+       "an array", "nothing: the key is missing", Schema::refuses},
+      {R"([{"op": "replace", "path": "/scene/rigid_bodies/0/upper", "value": ["0.2 m"]}])",
+       "/scene/rigid_bodies/0/upper", "an array of 2", "an array of 1", Schema::refuses},
+      {R"([{"op": "replace", "path": "/scene/rigid_bodies/0/upper/1", "value": "0.5 m"}])",
+       "/scene/rigid_bodies/0/upper/1", "above the lower corner's", "0.5 m", Schema::cannot_tell},
+      {R"([{"op": "replace", "path": "/scene/rigid_bodies/0/constrains", "value": []}])",
+       "/scene/rigid_bodies/0/constrains", "an array of at least one value", "an empty array",
+       Schema::refuses},
+      {R"([{"op": "replace", "path": "/scene/rigid_bodies/0/constrains", "value": ["z"]}])",
+       "/scene/rigid_bodies/0/constrains/0", "one of x, y", "\"z\"", Schema::refuses},
+      {R"([{"op": "replace", "path": "/scene/rigid_bodies/0/constrains", "value": ["y", "y"]}])",
+       "/scene/rigid_bodies/0/constrains/1", "each component once", "\"y\" again", Schema::refuses},
+      {R"([{"op": "replace", "path": "/scene/rigid_bodies/0/velocity/1", "value": "-1 mm"}])",
+       "/scene/rigid_bodies/0/velocity/1", "a velocity such as", "\"-1 mm\", a length", Schema::refuses},
+      {R"([{"op": "replace", "path": "/scene/rigid_bodies/0/angular_velocity", "value": "30 deg"}])",
+       "/scene/rigid_bodies/0/angular_velocity", "an angular velocity such as \"0.5 rad/s\" (unit rad/s)",
+       "\"30 deg\", an angle", Schema::refuses},
+      {R"([{"op": "replace", "path": "/scene/rigid_bodies/0/start", "value": "-1 s"}])",
+       "/scene/rigid_bodies/0/start", "zero or above", "-1 s", Schema::refuses},
+      {R"([{"op": "replace", "path": "/scene/rigid_bodies/0/ramp", "value": "-1 s"}])",
+       "/scene/rigid_bodies/0/ramp", "zero or above", "-1 s", Schema::refuses},
+      {R"([{"op": "add", "path": "/scene/rigid_bodies/0/speed", "value": "1 m/s"}])",
+       "/scene/rigid_bodies/0/speed", "one of the keys name, lower, upper, constrains, velocity", "\"speed\"",
+       Schema::refuses},
+
+      // Surface loads.
+      {R"([{"op": "replace", "path": "/scene/surface_loads/0/body", "value": "lover"}])",
+       "/scene/surface_loads/0/body", "one of lower, plate", "\"lover\" (did you mean \"lower\"?)",
+       Schema::cannot_tell},
+      {R"([{"op": "replace", "path": "/scene/surface_loads/0/body", "value": "plate"}])",
+       "/scene/surface_loads/0/body", "a whole block", "\"plate\", a ring", Schema::cannot_tell},
+      {R"([{"op": "remove", "path": "/scene/surface_loads/0/body"}])", "/scene/surface_loads/0/body",
+       "one of lower, plate", "nothing: the key is missing", Schema::refuses},
+      {R"([{"op": "replace", "path": "/scene/surface_loads/0/edge", "value": "top"}])",
+       "/scene/surface_loads/0/edge", "one of x_lower, x_upper, y_lower, y_upper", "\"top\"",
+       Schema::refuses},
+      {R"([{"op": "remove", "path": "/scene/surface_loads/0/from"}])", "/scene/surface_loads/0/from",
+       "a length such as", "nothing: the key is missing", Schema::refuses},
+      {R"([{"op": "remove", "path": "/scene/surface_loads/0/to"}])", "/scene/surface_loads/0/to",
+       "a length such as", "nothing: the key is missing", Schema::refuses},
+      {R"([{"op": "replace", "path": "/scene/surface_loads/0/to", "value": "0.2 m"}])",
+       "/scene/surface_loads/0/to", "at least one particle", "0.2 m to 0.2 m", Schema::cannot_tell},
+      {R"([{"op": "remove", "path": "/scene/surface_loads/0/traction"}])", "/scene/surface_loads/0/traction",
+       "an array", "nothing: the key is missing", Schema::refuses},
+      {R"([{"op": "replace", "path": "/scene/surface_loads/0/traction", "value": ["-2 kPa"]}])",
+       "/scene/surface_loads/0/traction", "an array of 2", "an array of 1", Schema::refuses},
+      {R"([{"op": "replace", "path": "/scene/surface_loads/0/traction/1", "value": "-2 kN"}])",
+       "/scene/surface_loads/0/traction/1", "a pressure such as", "\"-2 kN\"", Schema::refuses},
+      {R"([{"op": "replace", "path": "/scene/surface_loads/0/ramp", "value": "-1 s"}])",
+       "/scene/surface_loads/0/ramp", "zero or above", "-1 s", Schema::refuses},
+      {R"([{"op": "replace", "path": "/scene/sums_strain", "value": "yes"}])", "/scene/sums_strain",
+       "true or false", "\"yes\"", Schema::refuses},
+
+      // Probes.
+      {R"([{"op": "replace", "path": "/probes/1/of", "value": "fotting"}])", "/probes/1/of",
+       "one of footing, plug, lower, plate", "(did you mean \"footing\"?)", Schema::cannot_tell},
+      {R"([{"op": "replace", "path": "/probes/2/of", "value": "plate"}])", "/probes/2/of",
+       "one of footing, plug", "\"plate\"", Schema::cannot_tell},
+      {R"([{"op": "replace", "path": "/probes/3/of", "value": "footing"}])", "/probes/3/of",
+       "one of lower, plate", "\"footing\"", Schema::cannot_tell},
+      {R"([{"op": "remove", "path": "/probes/4/of"}])", "/probes/4/of", "one of lower, plate",
+       "nothing: the key is missing", Schema::refuses},
+      {R"([{"op": "remove", "path": "/probes/1/of"}])", "/probes/1", "either at or of", "neither",
+       Schema::refuses},
+      {R"([{"op": "add", "path": "/probes/1/at", "value": ["0 m", "0 m"]}])", "/probes/1", "either at or of",
+       "both", Schema::refuses},
+      {R"([{"op": "add", "path": "/probes/0/of", "value": "plate"}])", "/probes/0/of",
+       "one of the keys id, quantity, at, component, every", "\"of\"", Schema::refuses},
+      {R"([{"op": "add", "path": "/probes/6/of", "value": "plate"}])", "/probes/6/of",
+       "one of the keys id, quantity, every", "\"of\"", Schema::refuses},
+      {R"([{"op": "add", "path": "/probes/5/at", "value": ["0 m", "0 m"]}])", "/probes/5/at",
+       "one of the keys id, quantity, component, every", "\"at\"", Schema::refuses},
+      {R"([{"op": "add", "path": "/probes/4/component", "value": "y"}])", "/probes/4/component",
+       "one of the keys id, quantity, of, every", "\"component\"", Schema::refuses},
+      {R"([{"op": "replace", "path": "/probes/3/component", "value": "xy"}])", "/probes/3/component",
+       "one of x, y", "\"xy\"", Schema::refuses},
+      {R"([{"op": "replace", "path": "/probes/0/component", "value": "x"}])", "/probes/0/component",
+       "one of xx, yy, zz, xy", "\"x\"", Schema::refuses},
+      {R"([{"op": "add", "path": "/probes/2/component", "value": "x"}])", "/probes/2/component",
+       "a component that footing constrains", "x, in which it has no reaction", Schema::cannot_tell},
+      {R"([{"op": "replace", "path": "/probes/6/quantity", "value": "strain_energy"}])", "/probes/6/quantity",
+       "strain energy needs linear_elastic or neo_hookean",
+       "\"strain_energy\", but \"lower\" has another law", Schema::cannot_tell},
+      {R"([{"op": "replace", "path": "/probes/0/at", "value": ["0.5 m", "0.9 m"]}])", "/probes/0/at",
+       "a place within one particle spacing of a particle", "\"0.5 m\", \"0.9 m\", which hits none",
+       Schema::cannot_tell},
+      {R"([{"op": "replace", "path": "/probes/0/at", "value": ["0.95 m", "1.15 m"]}])", "/probes/0/at",
+       "a place within one particle spacing of a particle", "which hits none", Schema::cannot_tell},
+      {R"([{"op": "replace", "path": "/probes/0/quantity", "value": "temperature"}])", "/probes/0/quantity",
+       "one of displacement, velocity, stress, reaction, weight", "\"temperature\"", Schema::refuses},
+      {R"([{"op": "remove", "path": "/scene/rigid_bodies"}, {"op": "remove", "path": "/snapshots"}, {"op": "remove", "path": "/figures"}, {"op": "remove", "path": "/probes/1"}])",
+       "/probes/1/of", "the name of a rigid body, of which the scene has none", "\"footing\"",
+       Schema::cannot_tell},
+
+      // Snapshots.
+      {R"([{"op": "replace", "path": "/snapshots/1/time", "value": "-1 s"}])", "/snapshots/1/time",
+       "zero or above", "\"-1 s\"", Schema::refuses},
+      {R"([{"op": "replace", "path": "/snapshots/1/time", "value": "0.1 m"}])", "/snapshots/1/time",
+       "a time such as", "\"0.1 m\", a length", Schema::refuses},
+      {R"([{"op": "replace", "path": "/snapshots/1/time", "value": "2.1 s"}])", "/snapshots/1/time",
+       "a time before the run has ended", "\"2.1 s\", which is later", Schema::cannot_tell},
+      {R"([{"op": "replace", "path": "/snapshots/2/probe", "value": "pressure"}])", "/snapshots/2/probe",
+       "settlement", "\"pressure\"", Schema::cannot_tell},
+      {R"([{"op": "replace", "path": "/snapshots/2/probe", "value": "setlement"}])", "/snapshots/2/probe",
+       "settlement", "(did you mean \"settlement\"?)", Schema::cannot_tell},
+      {R"([{"op": "replace", "path": "/snapshots/2/reaches", "value": "5 s"}])", "/snapshots/2/reaches",
+       "a length such as", "\"5 s\", a time", Schema::refuses},
+      {R"([{"op": "remove", "path": "/snapshots/2/reaches"}])", "/snapshots/2/reaches", "a length such as",
+       "nothing: the key is missing", Schema::refuses},
+      {R"([{"op": "remove", "path": "/snapshots/2/probe"}])", "/snapshots/2/probe", "settlement",
+       "nothing: the key is missing", Schema::refuses},
+      {R"([{"op": "replace", "path": "/snapshots/3/end", "value": false}])", "/snapshots/3/end", "true",
+       "false", Schema::refuses},
+      {R"([{"op": "add", "path": "/snapshots/3/time", "value": "1 s"}])", "/snapshots/3",
+       "either time, or probe and reaches, or end", "more than one of them", Schema::refuses},
+      {R"([{"op": "replace", "path": "/snapshots/3", "value": {}}])", "/snapshots/3",
+       "either time, or probe and reaches, or end", "none of them", Schema::refuses},
+      {R"([{"op": "replace", "path": "/snapshots/1/time", "value": "0 s"}])", "/snapshots/1",
+       "each moment once", "the moment of an earlier one", Schema::cannot_tell},
+      {R"([{"op": "remove", "path": "/probes/1"}])", "/snapshots/2/probe",
+       "the id of a displacement probe, of which this case has none", "\"settlement\"", Schema::cannot_tell},
+
+      // Figures.
+      {R"([{"op": "replace", "path": "/figures/0/quantity", "value": "max_shear_stain"}])",
+       "/figures/0/quantity", "one of displacement", "(did you mean \"max_shear_strain\"?)",
+       Schema::cannot_tell},
+      {R"([{"op": "remove", "path": "/scene/sums_strain"}])", "/figures/0/quantity",
+       "a scalar that the scene keeps", "which needs sums_strain to be true", Schema::cannot_tell},
+      {R"([{"op": "remove", "path": "/snapshots"}])", "/figures/0/quantity",
+       "a figure of the case's snapshots, of which it has none", "\"max_shear_strain\"", Schema::cannot_tell},
+      {R"([{"op": "remove", "path": "/figures/0/quantity"}])", "/figures/0/quantity", "one of displacement",
+       "nothing: the key is missing", Schema::refuses},
+      {R"([{"op": "add", "path": "/figures/0/references", "value": []}])", "/figures/0/references",
+       "one of the keys id, kind, caption, panels, series, where, quantity", "\"references\"",
+       Schema::refuses},
+      {R"([{"op": "replace", "path": "/figures/1/quantity", "value": "presure"}])", "/figures/1/quantity",
+       "pressure", "(did you mean \"pressure\"?)", Schema::cannot_tell},
+      {R"([{"op": "replace", "path": "/figures/1/references", "value": ["hencky"]}])",
+       "/figures/1/references/0", "", "\"hencky\"", Schema::cannot_tell},
+  };
+  return all;
+}
+
+/// What turns the driven bar into a case that is refused.
+const std::vector<Malformed>& malformed_waves() {
+  static const std::vector<Malformed> all = {
+      // One dimension has no more than one component.
+      {R"([{"op": "add", "path": "/scene/bodies/0/ring", "value": {"center": ["0.5 m"], "outer_radius": "0.2 m"}}])",
+       "/scene/bodies/0/ring", "one of the keys name, lower", "\"ring\"", Schema::refuses},
+      {R"([{"op": "add", "path": "/scene/bodies/0/initial_stress", "value": {"type": "uniform", "yy": "1 Pa"}}])",
+       "/scene/bodies/0/initial_stress/yy", "one of the keys type, xx", "\"yy\"", Schema::refuses},
+      {R"([{"op": "add", "path": "/scene/rigid_bodies", "value": [{"name": "wall", "lower": ["0 m"], "upper": ["0.1 m"], "angular_velocity": "1 rad/s"}]}])",
+       "/scene/rigid_bodies/0/angular_velocity", "one of the keys name", "\"angular_velocity\"",
+       Schema::refuses},
+      {R"([{"op": "add", "path": "/scene/rigid_bodies", "value": [{"name": "wall", "lower": ["0 m"], "upper": ["0.1 m"], "constrains": ["y"]}]}])",
+       "/scene/rigid_bodies/0/constrains/0", "x", "\"y\"", Schema::refuses},
+      {R"([{"op": "add", "path": "/scene/surface_loads", "value": [{"body": "lower", "edge": "y_upper", "traction": ["1 Pa"]}]}])",
+       "/scene/surface_loads/0/edge", "one of x_lower, x_upper", "\"y_upper\"", Schema::refuses},
+      {R"([{"op": "add", "path": "/scene/surface_loads", "value": [{"body": "lower", "edge": "x_upper", "from": "0 m", "traction": ["1 Pa"]}]}])",
+       "/scene/surface_loads/0/from", "one of the keys body, edge, traction, ramp", "\"from\"",
+       Schema::refuses},
+      {R"([{"op": "add", "path": "/probes/-", "value": {"id": "p", "quantity": "stress", "component": "yy", "at": ["0.5 m"], "every": "1 s"}}])",
+       "/probes/1/component", "xx", "\"yy\"", Schema::cannot_tell},
+      {R"([{"op": "add", "path": "/snapshots", "value": [{"end": true}]}, {"op": "add", "path": "/figures", "value": [{"id": "f", "kind": "fields", "quantity": "displacement", "caption": "C."}]}])",
+       "/figures/0/quantity", "another dimension", "\"displacement\", which needs two dimensions",
+       Schema::cannot_tell},
+
+      // Driven motions.
+      {R"([{"op": "remove", "path": "/scene/driven_motion/solution"}])", "/scene/driven_motion/solution",
+       "one of standing_wave, axis_aligned", "nothing: the key is missing", Schema::refuses},
+      {R"([{"op": "replace", "path": "/scene/driven_motion/solution", "value": "standing_waves"}])",
+       "/scene/driven_motion/solution", "one of standing_wave", "(did you mean \"standing_wave\"?)",
+       Schema::refuses},
+      {R"([{"op": "replace", "path": "/scene/driven_motion/solution", "value": "axis_aligned"}])",
+       "/scene/driven_motion/solution", "a motion in as many dimensions as the scene's",
+       "\"axis_aligned\", which has 2", Schema::cannot_tell},
+      {R"([{"op": "replace", "path": "/scene/driven_motion", "value": {"solution": "rotation"}}])",
+       "/scene/driven_motion/angular_velocity", "an angular velocity such as", "nothing: the key is missing",
+       Schema::refuses},
+      {R"([{"op": "replace", "path": "/scene/driven_motion", "value": {"solution": "rotation", "angular_velocity": "1 rad/s", "amplitude": "1 m"}}])",
+       "/scene/driven_motion/amplitude", "one of the keys solution, angular_velocity, center",
+       "\"amplitude\"", Schema::refuses},
+      {R"([{"op": "remove", "path": "/scene/driven_motion/amplitude"}])", "/scene/driven_motion/amplitude",
+       "a length such as", "nothing: the key is missing", Schema::refuses},
+      {R"([{"op": "replace", "path": "/scene/driven_motion/amplitude", "value": "5 deg"}])",
+       "/scene/driven_motion/amplitude", "a length such as", "\"5 deg\", an angle", Schema::refuses},
+      {R"([{"op": "replace", "path": "/scene/driven_motion/amplitude", "value": "0.5 m"}])",
+       "/scene/driven_motion/amplitude", "where the deformation gradient inverts", "0.5",
+       Schema::cannot_tell},
+      {R"([{"op": "add", "path": "/scene/driven_motion/period", "value": "1 s"}])",
+       "/scene/driven_motion/period", "one of the keys solution, amplitude, length", "\"period\"",
+       Schema::refuses},
+      {R"([{"op": "add", "path": "/scene/driven_motion/center", "value": ["0 m"]}])",
+       "/scene/driven_motion/center", "one of the keys solution, amplitude, length", "\"center\"",
+       Schema::refuses},
+      {R"([{"op": "add", "path": "/scene/bodies/0/velocity", "value": ["0 m/s"]}])",
+       "/scene/bodies/0/velocity", "no velocity where driven_motion gives it", "an array of 1",
+       Schema::cannot_tell},
+      {R"([{"op": "replace", "path": "/scene/bodies/0/material/law", "value": "linear_elastic"}])",
+       "/scene/bodies/0/material/law", "neo_hookean, which standing_wave is of", "\"linear_elastic\"",
+       Schema::cannot_tell},
+      {R"([{"op": "replace", "path": "/scene/driven_motion/solution", "value": "vibrating_bar"}, {"op": "replace", "path": "/scene/bodies/0/material", "value": {"law": "zhang_elastic", "youngs_modulus": "1 MPa"}}])",
+       "/scene/bodies/0/material/law", "linear_elastic or neo_hookean", "\"zhang_elastic\"",
+       Schema::cannot_tell},
+      {R"([{"op": "replace", "path": "/scene/bodies/0/upper/0", "value": "0.5 m"}, {"op": "add", "path": "/scene/bodies/-", "value": {"name": "upper", "lower": ["0.5 m"], "upper": ["1 m"], "particles_per_cell": [2], "density": "1000 kg/m^3", "material": {"law": "neo_hookean", "youngs_modulus": "20 MPa", "poissons_ratio": 0.3}}}])",
+       "/scene/bodies/1", "a body with the constant density and the moduli of the first", "an object",
+       Schema::cannot_tell},
+      {R"([{"op": "add", "path": "/scene/bodies/0/density_ramp", "value": {"final_density": "1 t/m^3", "duration": "1 s"}}])",
+       "/scene/bodies/0", "a body with the constant density", "an object", Schema::cannot_tell},
+  };
+  return all;
+}
+
+void expect_refused(const Json& valid, const std::vector<Malformed>& all) {
+  EXPECT_EQ(refusal_of(valid.dump()), "");
+  for (const Malformed& malformed : all) {
     SCOPED_TRACE(malformed.patch);
-    const Json text = valid_case().patch(Json::parse(malformed.patch));
+    const Json text = valid.patch(Json::parse(malformed.patch));
     expect_message(refusal_of(text.dump()), "column.json", malformed.pointer, malformed.expected,
                    malformed.found);
   }
 }
 
-TEST(MalformedCase, is_refused_by_the_schema_alone_where_a_schema_can_tell) {
-  for (const Malformed& malformed : malformed_cases()) {
-    const Json text = valid_case().patch(Json::parse(malformed.patch));
+TEST(MalformedCase, is_refused_in_one_line_that_names_place_expected_and_found) {
+  expect_refused(valid_case(), malformed_cases());
+  expect_refused(footing_case(), malformed_footings());
+  expect_refused(wave_case(), malformed_waves());
+}
+
+void expect_schema_to_tell(const Json& valid, const std::vector<Malformed>& all) {
+  const auto violation = schema_violation(valid);
+  EXPECT_FALSE(violation) << violation->pointer << ": " << violation->description;
+  for (const Malformed& malformed : all) {
+    const Json text = valid.patch(Json::parse(malformed.patch));
     EXPECT_EQ(schema_violation(text).has_value(), malformed.schema == Schema::refuses) << malformed.patch;
   }
+}
+
+TEST(MalformedCase, is_refused_by_the_schema_alone_where_a_schema_can_tell) {
+  expect_schema_to_tell(valid_case(), malformed_cases());
+  expect_schema_to_tell(footing_case(), malformed_footings());
+  expect_schema_to_tell(wave_case(), malformed_waves());
 }
 
 struct MalformedFile {

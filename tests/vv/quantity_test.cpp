@@ -38,6 +38,7 @@ TEST(Quantity, is_read_into_the_nearest_double_in_si_units) {
       {"2.43 t/m^3", QuantityKind::density, 2430.0},
       {"-9.8 m/s^2", QuantityKind::acceleration, -9.8},
       {"0.3 cm/s", QuantityKind::velocity, 0.003},
+      {"-0.5 rad/s", QuantityKind::angular_velocity, -0.5},
   };
   for (const Reading& reading : readings) {
     EXPECT_EQ(parse_quantity(reading.text, reading.kind), reading.value) << reading.text;
@@ -47,7 +48,7 @@ TEST(Quantity, is_read_into_the_nearest_double_in_si_units) {
 TEST(Quantity, is_read_in_every_unit_of_its_kind) {
   for (const QuantityKind kind :
        {QuantityKind::length, QuantityKind::time, QuantityKind::pressure, QuantityKind::density,
-        QuantityKind::acceleration, QuantityKind::velocity}) {
+        QuantityKind::acceleration, QuantityKind::velocity, QuantityKind::angular_velocity}) {
     ASSERT_FALSE(units_of(kind).empty());
     EXPECT_EQ(units_of(kind).front().exponent, 0) << "the SI unit comes first";
     for (const Unit& unit : units_of(kind)) {
@@ -61,7 +62,7 @@ TEST(Quantity, is_read_in_every_unit_of_its_kind) {
 TEST(Quantity, has_an_example_that_is_one) {
   for (const QuantityKind kind :
        {QuantityKind::length, QuantityKind::time, QuantityKind::pressure, QuantityKind::density,
-        QuantityKind::acceleration, QuantityKind::velocity}) {
+        QuantityKind::acceleration, QuantityKind::velocity, QuantityKind::angular_velocity}) {
     const std::string expectation = expectation_of(kind);
     const std::size_t first = expectation.find('"') + 1;
     const std::string example = expectation.substr(first, expectation.rfind('"') - first);
@@ -101,6 +102,7 @@ TEST(Quantity, is_refused_with_what_was_expected_and_found) {
       {"1e306 GPa", QuantityKind::pressure, "\"1e306 GPa\", beyond the range of a floating-point number"},
       {"1e99999999999 m", QuantityKind::length,
        "\"1e99999999999 m\", beyond the range of a floating-point number"},
+      {"30 deg", QuantityKind::angular_velocity, "\"30 deg\", an angle"},
       {"", QuantityKind::length, "\"\""},
       {"m", QuantityKind::length, "\"m\""},
       {"1 m\n2", QuantityKind::length, "\"1 m?2\""},

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <fstream>
@@ -14,6 +16,7 @@
 
 #include "tests/support/column_scene.hpp"
 #include "tests/support/scratch_directory.hpp"
+#include "vv/sampler.hpp"
 
 namespace mpm::vv {
 namespace {
@@ -40,7 +43,7 @@ RunRequest column(int cells, Scheme scheme = Scheme::cpgimp) {
 }
 
 HistoryProbe probe(const std::string& id, const std::string& quantity, double at, double every) {
-  return {.id = id, .quantity = quantity, .at = {at, 0.0}, .every = every};
+  return {.id = id, .quantity = quantity, .component = "", .at = {at, 0.0}, .of = "", .every = every};
 }
 
 Record full_record() {
@@ -63,6 +66,14 @@ Record full_record() {
   record.profile = {{0.0, 0.5}, {-1e-3, -2e-3}, {1e-300, 5e-324}, {nan, -0.0},
                     {1, 2},     {3, 4},         {5, 6},           {7, 8}};
   record.histories = {{"top", "displacement", {0.0, 0.1}, {-0.0, nan}}};
+  ParticleFields fields;
+  fields.dimension = 2;
+  fields.initial_position = {1.0 / 3.0, 1e-300, 0.0, -0.0};
+  fields.displacement = fields.position = fields.velocity = fields.half_size = {1, 2, 3, 4};
+  fields.stress = fields.strain = {-123456789.4, nan, infinity, 1e10 / 7, 5, 6, 7, 8};
+  fields.volume = fields.initial_volume = fields.mass = {0.1, 0.2};
+  fields.body = {0, 3};
+  record.snapshots = {{"end", 0.1 + 0.2, fields}};
   record.cost = {.wall_seconds = 1.5e-7, .steps = 12, .particle_steps = 600};
   return record;
 }
@@ -117,6 +128,28 @@ TEST(RecordText, BringsBackAnyFiniteNumber) {
   EXPECT_EQ(bits_of(read.profile.stress), bits_of(written.profile.stress));
 }
 
+TEST(RecordText, BringsBackSnapshotsToNineDigits) {
+  const std::string text = to_json(full_record()).dump();
+  const Record read = record_from_json(Json::parse(text));
+  ASSERT_EQ(read.snapshots.size(), 1u);
+  const Snapshot& snapshot = read.snapshots[0];
+  EXPECT_EQ(snapshot.moment, "end");
+  EXPECT_EQ(snapshot.time, 0.1 + 0.2);
+  EXPECT_EQ(snapshot.fields.dimension, 2);
+  EXPECT_EQ(snapshot.fields.initial_position, (std::vector<double>{0.333333333, 1e-300, 0.0, 0.0}));
+  EXPECT_EQ(snapshot.fields.velocity, (std::vector<double>{1, 2, 3, 4}));
+  EXPECT_EQ(snapshot.fields.stress[0], -123456789.0);
+  EXPECT_TRUE(std::isnan(snapshot.fields.stress[1]));
+  EXPECT_EQ(snapshot.fields.stress[2], infinity);
+  EXPECT_EQ(snapshot.fields.stress[3], 1428571430.0);
+  EXPECT_EQ(snapshot.fields.strain.size(), 8u);
+  EXPECT_TRUE(snapshot.fields.deformation_gradient.empty());
+  EXPECT_EQ(snapshot.fields.mass, (std::vector<double>{0.1, 0.2}));
+  EXPECT_EQ(snapshot.fields.body, (std::vector<std::size_t>{0, 3}));
+  EXPECT_NE(text.find("[0.333333333,1e-300,"), std::string::npos) << "no digit more is written";
+  EXPECT_EQ(to_json(read).dump(), text);
+}
+
 TEST(RecordText, NeverTurnsANumberIntoNull) {
   EXPECT_EQ(to_json(full_record()).dump().find("null"), std::string::npos);
   EXPECT_EQ(to_json(full_record())["profile"]["stress"][0], "nan");
@@ -125,7 +158,7 @@ TEST(RecordText, NeverTurnsANumberIntoNull) {
 TEST(RecordText, RefusesWhatIsNoWholeRecord) {
   const Json good = to_json(full_record());
   EXPECT_NO_THROW(record_from_json(good));
-  for (const char* key : {"schema", "outcome", "profile", "histories", "cost", "digest"}) {
+  for (const char* key : {"schema", "outcome", "profile", "histories", "snapshots", "cost", "digest"}) {
     Json lacking = good;
     lacking.erase(key);
     EXPECT_ANY_THROW(record_from_json(lacking)) << key;
@@ -136,6 +169,14 @@ TEST(RecordText, RefusesWhatIsNoWholeRecord) {
   Json uneven = good;
   uneven["histories"][0]["time"].push_back(0.3);
   EXPECT_ANY_THROW(record_from_json(uneven));
+  for (const char* key : {"initial_position", "stress", "strain", "mass", "body"}) {
+    Json lacking = good;
+    lacking["snapshots"][0]["fields"][key].erase(0);
+    EXPECT_ANY_THROW(record_from_json(lacking)) << key;
+  }
+  Json spatial = good;
+  spatial["snapshots"][0]["fields"]["dimension"] = 3;
+  EXPECT_ANY_THROW(record_from_json(spatial));
   Json unknown = good;
   unknown["outcome"]["ending"] = "fine";
   EXPECT_ANY_THROW(record_from_json(unknown));
@@ -162,7 +203,7 @@ TEST(Simulate, RecordsTheRunItWasAskedFor) {
   const RunRequest request = column(10);
   const Record record = simulate(definition, request);
   EXPECT_EQ(record.case_id, "column");
-  EXPECT_EQ(record.input_hash, input_hash(request, {}));
+  EXPECT_EQ(record.input_hash, input_hash(definition, request));
   EXPECT_EQ(record.program_hash, program_hash());
   EXPECT_EQ(record.outcome.ending, Ending::reached_time);
   EXPECT_TRUE(record.completed());
@@ -258,18 +299,365 @@ TEST(Simulate, RefusesAProbeItCannotServe) {
   EXPECT_THROW(simulate(definition, column(10)), std::invalid_argument);
 }
 
-TEST(InputHash, ChangesWithSceneAndProbesOnly) {
+// ---- probes of bodies and of everything
+// --------------------------------------------------------------------------
+
+HistoryProbe probe_of(const std::string& id, const std::string& quantity, ProbeTarget target,
+                      const std::string& of = "", const std::string& component = "") {
+  return {.id = id, .quantity = quantity, .component = component, .target = target, .of = of, .every = 1e-3};
+}
+
+/// A block of 1 m x 0.5 m without weight that flies at a constant velocity through an empty grid.
+RunRequest flying_block() {
+  RunRequest request;
+  Scene& scene = request.scene;
+  scene.dimension = 2;
+  scene.cell_size = 0.25;
+  scene.grid_lower = {-1.0, -1.0};
+  scene.grid_upper = {3.0, 3.0};
+  Body block;
+  block.name = "block";
+  block.upper = {1.0, 0.5};
+  block.particles_per_cell = {2, 2};
+  block.density = 1000.0;
+  block.velocity = {2.0, -0.5};
+  block.material = LinearElastic{1e7, 0.3};
+  Body other = block;
+  other.name = "other";
+  other.lower = {0.0, 1.5};
+  other.upper = {0.5, 2.0};
+  other.velocity = {0.0, 0.0};
+  scene.bodies = {block, other};
+  scene.time_step = GivenTimeStep{1e-4};
+  scene.termination = AtTime{0.01};
+  return request;
+}
+
+TEST(ProbesOfBodies, SeeMeansOverTheBodyAndSumsOverEverything) {
+  Case definition;
+  definition.probes = {probe_of("u", "displacement", ProbeTarget::body, "block", "x"),
+                       probe_of("v", "velocity", ProbeTarget::body, "block"),
+                       probe_of("still", "velocity", ProbeTarget::body, "other", "x"),
+                       probe_of("p", "momentum", ProbeTarget::everything, "", "x"),
+                       probe_of("k", "kinetic_energy", ProbeTarget::everything),
+                       probe_of("w", "strain_energy", ProbeTarget::everything)};
+  const Record record = simulate(definition, flying_block());
+  const auto last = [&](std::size_t i) { return record.histories[i].value.back(); };
+  ASSERT_EQ(record.histories[0].time.size(), 11u);
+  EXPECT_EQ(record.histories[0].value.front(), 0.0);
+  EXPECT_NEAR(last(0), 0.02, 1e-12);
+  EXPECT_NEAR(last(1), -0.5, 1e-12);
+  EXPECT_NEAR(last(2), 0.0, 1e-12);
+  EXPECT_NEAR(last(3), 500.0 * 2.0, 1e-8);
+  EXPECT_NEAR(last(4), 0.5 * 500.0 * (4.0 + 0.25), 1e-8);
+  EXPECT_NEAR(last(5), 0.0, 1e-8);
+}
+
+TEST(ProbesOfBodies, SeeOneComponentOfAParticle) {
+  RunRequest request = flying_block();
+  request.scene.bodies[0].initial_stress = UniformStress{.xx = 1.0, .yy = 2.0, .zz = 3.0, .xy = 4.0};
+  Case definition;
+  for (const char* component : {"xx", "yy", "zz", "xy", ""}) {
+    definition.probes.push_back(probe_of("s", "stress", ProbeTarget::particle, "", component));
+  }
+  for (const char* component : {"x", "y", ""}) {
+    definition.probes.push_back(probe_of("v", "velocity", ProbeTarget::particle, "", component));
+  }
+  const Record record = simulate(definition, request);
+  const std::vector<double> expected = {1, 2, 3, 4, 2, 2.0, -0.5, -0.5};
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_EQ(record.histories[i].value.front(), expected[i]) << i;
+  }
+}
+
+TEST(ProbesOfBodies, SeeTheEnergyOfAUniformStress) {
+  RunRequest request = flying_block();
+  request.scene.bodies.pop_back();
+  request.scene.bodies[0].initial_stress = UniformStress{.xx = 1e3, .yy = -2e3, .zz = 3e3, .xy = 4e3};
+  Case definition;
+  definition.probes = {probe_of("w", "strain_energy", ProbeTarget::everything)};
+  // 1/2 sigma : epsilon with epsilon from Hooke's law, on 0.5 m^2.
+  const double modulus = 1e7, nu = 0.3;
+  const double exx = (1e3 - nu * (-2e3 + 3e3)) / modulus, eyy = (-2e3 - nu * (1e3 + 3e3)) / modulus,
+               ezz = (3e3 - nu * (1e3 - 2e3)) / modulus, exy = 4e3 * (1 + nu) / modulus;
+  const double energy = 0.5 * (1e3 * exx - 2e3 * eyy + 3e3 * ezz + 2 * 4e3 * exy) * 0.5;
+  EXPECT_NEAR(simulate(definition, request).histories[0].value.front(), energy, 1e-12 * energy);
+}
+
+TEST(ProbesOfBodies, SeeTheirWeightUnderTheGravityOfTheMoment) {
+  RunRequest request = flying_block();
+  request.scene.gravity = {.acceleration = {0.0, -9.8}, .level = 2.0, .loading = RampLoading{0.02}};
+  request.scene.bodies[0].density_ramp = DensityRamp{3000.0, 0.0, 0.005};
+  Case definition;
+  definition.probes = {probe_of("w", "weight", ProbeTarget::body, "block"),
+                       probe_of("other", "weight", ProbeTarget::body, "other")};
+  const Record record = simulate(definition, request);
+  EXPECT_EQ(record.histories[0].value.front(), 0.0);
+  EXPECT_NEAR(record.histories[0].value.back(), 1500.0 * 9.8 * 2.0 * 0.5, 1e-8);
+  EXPECT_NEAR(record.histories[1].value.back(), 250.0 * 9.8 * 2.0 * 0.5, 1e-8);
+}
+
+TEST(ProbesOfBodies, SeeNoMassChangeInADensityRamp) {
+  RunRequest request = flying_block();
+  for (const double duration : {0.005, 0.02}) {  // over at the end of the run, and not
+    request.scene.bodies[0].density_ramp = DensityRamp{3000.0, 0.001, duration};
+    EXPECT_NEAR(simulate({}, request).relative_mass_change, 0.0, 1e-13) << duration;
+  }
+}
+
+/// A block that a rigid plate lifts at 1 m/s once the plate has set out.
+RunRequest lifted_block() {
+  RunRequest request = flying_block();
+  Scene& scene = request.scene;
+  scene.bodies.pop_back();
+  scene.bodies[0].velocity = {};
+  RigidBody plate;
+  plate.name = "plate";
+  plate.lower = {-0.5, -0.25};
+  plate.upper = {1.5, 0.0};
+  plate.constrains = {false, true};
+  plate.velocity = {0.0, 1.0};
+  scene.rigid_bodies = {plate};
+  scene.gravity.acceleration = {0.0, -9.8};
+  return request;
+}
+
+TEST(ProbesOfRigidBodies, SeeTheirDisplacementAndMeanReaction) {
+  Case definition;
+  definition.probes = {probe_of("u", "displacement", ProbeTarget::rigid_body, "plate"),
+                       probe_of("f", "reaction", ProbeTarget::rigid_body, "plate", "y"),
+                       probe_of("p", "momentum", ProbeTarget::everything)};
+  const RunRequest request = lifted_block();
+  const Record record = simulate(definition, request);
+  const History &displacement = record.histories[0], &reaction = record.histories[1],
+                &momentum = record.histories[2];
+  EXPECT_NEAR(displacement.value.back(), 0.01, 1e-12);
+  ASSERT_EQ(reaction.value.size(), 11u);
+  EXPECT_EQ(reaction.value.front(), 0.0);
+  // Newton's second and third law over each interval: what the particles gain the plate has given, less
+  // weight.
+  for (std::size_t k = 1; k < reaction.value.size(); ++k) {
+    const double interval = reaction.time[k] - reaction.time[k - 1];
+    const double gained = momentum.value[k] - momentum.value[k - 1];
+    const double weight = 500.0 * 9.8;
+    EXPECT_NEAR(-reaction.value[k] * interval, gained + weight * interval, 1e-9 * std::abs(gained) + 1e-9);
+  }
+  EXPECT_LT(reaction.value[1], -1e4) << "the particles press it down";
+}
+
+TEST(ProbesOfRigidBodies, AreNotServedWithoutThem) {
+  Case definition;
+  definition.probes = {probe_of("u", "displacement", ProbeTarget::rigid_body, "plug")};
+  EXPECT_THROW(simulate(definition, lifted_block()), std::invalid_argument);
+  definition.probes = {probe_of("u", "stress", ProbeTarget::rigid_body, "plate")};
+  EXPECT_THROW(simulate(definition, lifted_block()), std::invalid_argument);
+  definition.probes = {probe_of("u", "reaction", ProbeTarget::body, "block")};
+  EXPECT_THROW(simulate(definition, lifted_block()), std::invalid_argument);
+  definition.probes = {probe_of("u", "stress", ProbeTarget::everything)};
+  EXPECT_THROW(simulate(definition, lifted_block()), std::invalid_argument);
+  definition.probes = {probe_of("u", "velocity", ProbeTarget::body, "block", "z")};
+  EXPECT_THROW(simulate(definition, lifted_block()), std::invalid_argument);
+}
+
+TEST(StrainEnergy, OfANeoHookeanBarIsTheWorkOfItsStress) {
+  Scene scene = test::column_scene(Scheme::cpgimp, 1);
+  scene.bodies[0].material = NeoHookean{1e7, 0.3};
+  ParticleFields fields;
+  fields.body = {0};
+  fields.mass = {1.0};
+  fields.initial_volume = {2.0};
+  const double mu = 0.5e7;
+  double work = 0.0;  // integral of the law's stress over the stretch, by the midpoint rule
+  constexpr int steps = 100'000;
+  for (int k = 0; k < steps; ++k) {
+    const double stretch = 1.0 + 0.5 * (k + 0.5) / steps;
+    work += mu * (stretch - 1 / stretch) * (0.5 / steps) * 2.0;
+  }
+  fields.volume = {2.0};
+  EXPECT_EQ(strain_energy(scene, fields), 0.0);
+  fields.volume = {3.0};
+  EXPECT_NEAR(strain_energy(scene, fields), work, 1e-9 * work);
+}
+
+TEST(StrainEnergy, OfANeoHookeanBlockIsTheWorkOfItsStress) {
+  Scene scene = flying_block().scene;
+  const double modulus = 1e7, nu = 0.3;
+  const double mu = modulus / (2 * (1 + nu)), lambda = modulus * nu / ((1 + nu) * (1 - 2 * nu));
+  scene.bodies[1].material = NeoHookean{modulus, nu};
+  ParticleFields fields;
+  fields.dimension = 2;
+  fields.body = {1};
+  fields.mass = {1.0};
+  fields.initial_volume = fields.volume = {2.0};
+  // Along the path F = I + s D the first Piola-Kirchhoff stress mu (F - F^-T) + lambda ln J F^-T does the
+  // work.
+  const std::array<double, 4> d{0.3, 0.2, -0.1, 0.4};
+  double work = 0.0;
+  constexpr int steps = 100'000;
+  for (int k = 0; k < steps; ++k) {
+    const double s = (k + 0.5) / steps;
+    const std::array<double, 4> f{1 + s * d[0], s * d[1], s * d[2], 1 + s * d[3]};
+    const double j = f[0] * f[3] - f[1] * f[2];
+    const std::array<double, 4> inverse_transposed{f[3] / j, -f[2] / j, -f[1] / j, f[0] / j};
+    for (std::size_t i = 0; i < 4; ++i) {
+      const double p = mu * (f[i] - inverse_transposed[i]) + lambda * std::log(j) * inverse_transposed[i];
+      work += p * d[i] / steps * 2.0;
+    }
+  }
+  fields.deformation_gradient = {1, 0, 0, 1};
+  EXPECT_EQ(strain_energy(scene, fields), 0.0);
+  fields.deformation_gradient = {1 + d[0], d[1], d[2], 1 + d[3]};
+  EXPECT_NEAR(strain_energy(scene, fields), work, 1e-9 * work);
+}
+
+TEST(StrainEnergy, OfAnElasticBarIsKnownAndOfSoilRefused) {
+  Scene scene = test::column_scene(Scheme::cpgimp, 1);
+  ParticleFields fields;
+  fields.body = {0};
+  fields.mass = {1.0};
+  fields.stress = {2e4};
+  fields.volume = fields.initial_volume = {3.0};
+  EXPECT_DOUBLE_EQ(strain_energy(scene, fields), 0.5 * 2e4 * 2e4 / 1e7 * 3.0);
+  scene.bodies[0].material = ZhangElastic{1e7};
+  EXPECT_THROW(strain_energy(scene, fields), std::invalid_argument);
+}
+
+TEST(Observation, CopiesTheParticlesOnlyOnceAndWhenAsked) {
+  Simulation simulation(flying_block().scene);
+  const Observation now(simulation);
+  const ParticleFields& first = now.particles();
+  EXPECT_EQ(&first, &now.particles());
+  const Observation later(simulation);
+  simulation.advance();
+  EXPECT_NE(later.particles().position, first.position) << "what nobody has asked for has not been copied";
+  EXPECT_EQ(now.particles().position, first.position);
+}
+
+// ---- snapshots
+// ---------------------------------------------------------------------------------------------------
+
+using When = SnapshotRequest::When;
+
+TEST(Snapshots, AreTakenWhenTheirMomentsCome) {
+  Case definition;
+  definition.probes = {probe("top", "displacement", 1.0, 0.001)};
+  definition.snapshots = {{When::end, 0.0, "", 0.0},          {When::time, 0.02, "", 0.0},
+                          {When::time, 0.00025, "", 0.0},     {When::time, 0.0, "", 0.0},
+                          {When::passing, 0.0, "top", -1e-5}, {When::passing, 0.0, "top", 1.0}};
+  const Record record = simulate(definition, column(10));
+  ASSERT_EQ(record.snapshots.size(), 5u) << "the top never rises by a metre";
+  EXPECT_EQ(record.snapshots[0].moment, "t = 0 s");
+  EXPECT_EQ(record.snapshots[0].time, 0.0);
+  EXPECT_EQ(record.snapshots[1].moment, "t = 0.00025 s");
+  EXPECT_NEAR(record.snapshots[1].time, 0.0003, 1e-12) << "the first step that ends at or after it";
+  EXPECT_EQ(record.snapshots[2].moment, "top = -0.01 mm");
+  EXPECT_EQ(record.snapshots[3].moment, "t = 0.02 s");
+  EXPECT_NEAR(record.snapshots[3].time, 0.02, 1e-12);
+  EXPECT_EQ(record.snapshots[4].moment, "end");
+  EXPECT_EQ(record.snapshots[4].time, record.end_time);
+
+  const History& top = record.histories[0];
+  const auto passed = std::find_if(top.value.begin(), top.value.end(), [](double u) { return u <= -1e-5; });
+  EXPECT_EQ(record.snapshots[2].time, top.time[static_cast<std::size_t>(passed - top.value.begin())]);
+  const ParticleFields& fields = record.snapshots[4].fields;
+  EXPECT_EQ(fields.mass.size(), 10u);
+  for (std::size_t p = 0; p < 10; ++p) {
+    EXPECT_NEAR(fields.displacement[p], record.profile.displacement[p],
+                5e-9 * std::abs(record.profile.displacement[p]));
+  }
+}
+
+TEST(Snapshots, JudgeTheSameBeforeAndAfterTheyAreStored) {
+  Case definition;
+  definition.snapshots = {{When::end, 0.0, "", 0.0}};
+  const Record record = simulate(definition, column(10));
+  const Record read = record_from_json(Json::parse(to_json(record).dump()));
+  EXPECT_EQ(bits_of(read.snapshots[0].fields.stress), bits_of(record.snapshots[0].fields.stress));
+  EXPECT_EQ(read.snapshots[0].fields.body, record.snapshots[0].fields.body);
+}
+
+TEST(Snapshots, AtTheTimeTheRunEndsAreTaken) {
+  Case definition;
+  RunRequest request = column(10);
+  request.scene.time_step = GivenTimeStep{3e-4};  // 167 steps end at 0.0501 s, the nearest to 0.05 s
+  definition.snapshots = {{When::time, 0.05, "", 0.0}};
+  EXPECT_EQ(simulate(definition, request).snapshots.size(), 1u);
+  request.scene.time_step = GivenTimeStep{1.6e-4};  // 312 steps end at 0.04992 s
+  EXPECT_EQ(simulate(definition, request).snapshots.size(), 1u);
+}
+
+TEST(Snapshots, DoNotChangeTheRun) {
+  Case bare, watched;
+  watched.snapshots = {{When::time, 0.0123, "", 0.0}, {When::end, 0.0, "", 0.0}};
+  EXPECT_EQ(simulate(bare, column(10)).digest, simulate(watched, column(10)).digest);
+}
+
+TEST(Snapshots, KeepStrainWhereTheSceneSumsIt) {
+  Case definition;
+  definition.snapshots = {{When::end, 0.0, "", 0.0}};
+  RunRequest request = column(10);
+  EXPECT_TRUE(simulate(definition, request).snapshots[0].fields.strain.empty());
+  request.scene.sums_strain = true;
+  EXPECT_EQ(simulate(definition, request).snapshots[0].fields.strain.size(), 10u);
+}
+
+TEST(Snapshots, OfAProbeThereIsNotAreRefused) {
+  Case definition;
+  definition.snapshots = {{When::passing, 0.0, "top", 0.0}};
+  EXPECT_THROW(simulate(definition, column(10)), std::invalid_argument);
+}
+
+// ---- hashes and files
+// --------------------------------------------------------------------------------------------
+
+TEST(InputHash, ChangesWithSceneProbesAndSnapshotsOnly) {
   const RunRequest request = column(10);
-  const std::vector<HistoryProbe> probes = {probe("top", "stress", 1.0, 0.01)};
-  const std::string hash = input_hash(request, probes);
+  const auto hash_with = [&](const std::vector<HistoryProbe>& probes,
+                             const std::vector<SnapshotRequest>& snapshots = {}) {
+    Case definition;
+    definition.probes = probes;
+    definition.snapshots = snapshots;
+    return input_hash(definition, request);
+  };
+  const HistoryProbe top = probe("top", "stress", 1.0, 0.01);
+  Case watched;
+  watched.probes = {top};
+  const std::string hash = hash_with({top});
   EXPECT_EQ(hash.size(), 16u);
-  EXPECT_EQ(hash, input_hash(column(10), probes));
-  std::set<std::string> different{hash, input_hash(column(11), probes), input_hash(request, {})};
+  EXPECT_EQ(hash, input_hash(watched, column(10)));
+  std::set<std::string> different{hash, input_hash(watched, column(11)), hash_with({})};
   for (const HistoryProbe& other : {probe("up", "stress", 1.0, 0.01), probe("top", "velocity", 1.0, 0.01),
                                     probe("top", "stress", 0.9, 0.01), probe("top", "stress", 1.0, 0.02)}) {
-    different.insert(input_hash(request, {other}));
+    different.insert(hash_with({other}));
   }
   EXPECT_EQ(different.size(), 7u);
+  for (const SnapshotRequest& snapshot :
+       {SnapshotRequest{When::end, 0.0, "", 0.0}, SnapshotRequest{When::time, 0.0, "", 0.0},
+        SnapshotRequest{When::time, 0.1, "", 0.0}, SnapshotRequest{When::passing, 0.0, "top", 0.0},
+        SnapshotRequest{When::passing, 0.0, "base", 0.0}, SnapshotRequest{When::passing, 0.0, "top", 0.1}}) {
+    different.insert(hash_with({top}, {snapshot}));
+  }
+  EXPECT_EQ(different.size(), 13u);
+  HistoryProbe other = top;
+  other.component = "yy";
+  different.insert(hash_with({other}));
+  for (const ProbeTarget target : {ProbeTarget::rigid_body, ProbeTarget::body}) {
+    for (const char* name : {"footing", "ground"}) {
+      other = top;
+      other.target = target;
+      other.of = name;
+      different.insert(hash_with({other}));
+    }
+  }
+  EXPECT_EQ(different.size(), 18u);
+}
+
+TEST(InputHash, DoesNotTellAComponentSpeltOutFromTheSameByDefault) {
+  Case definition;
+  definition.probes = {probe("top", "stress", 1.0, 0.01)};
+  const std::string hash = input_hash(definition, column(10));
+  definition.probes[0].component = "xx";
+  EXPECT_EQ(input_hash(definition, column(10)), hash);
 }
 
 TEST(Hash, IsFnv1a) {

@@ -1,0 +1,109 @@
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "solver/particles.hpp"
+
+namespace mpm {
+
+/// What acts on particles beside gravity: tractions on edges, the body force of a driven motion, and masses
+/// that change.
+template <int Dim, class Real>
+class Loading {
+ public:
+  /// Gives the particles of a driven motion their initial velocities.
+  Loading(const Scene& scene, double time_step, Particles<Dim, Real>& particles) : scene_(scene) {
+    for (const SurfaceLoad& load : scene.surface_loads) find_row(load, particles);
+    if (!scene.driven_motion) return;
+    for (const Body& body : scene.bodies) {
+      const Lattice lattice = lattice_of(scene, body);
+      start_.insert(start_.end(), lattice.centers.begin(), lattice.centers.end());
+    }
+    for (Eigen::Index p = 0; p < particles.count(); ++p) {
+      const PerAxis velocity =
+          scene.driven_motion->velocity(start_[static_cast<std::size_t>(p)], -time_step / 2);
+      for (std::size_t a = 0; a < Dim; ++a) particles.velocity[a][p] = static_cast<Real>(velocity[a]);
+    }
+  }
+
+  /// Whether there is any external force to scatter.
+  bool has_forces() const { return scene_.driven_motion || !rows_.empty(); }
+
+  /// Sets the external forces acting at `time` [s].
+  void set_forces(double time, Particles<Dim, Real>& particles) const {
+    if (scene_.driven_motion) {
+      for (Eigen::Index p = 0; p < particles.count(); ++p) {
+        const PerAxis force = scene_.driven_motion->body_force(start_[static_cast<std::size_t>(p)], time);
+        for (std::size_t a = 0; a < Dim; ++a) {
+          particles.external_force[a][p] = particles.mass[p] * static_cast<Real>(force[a]);
+        }
+      }
+    } else {
+      for (Field<Real>& component : particles.external_force) component.setZero();
+    }
+    for (const Row& row : rows_) {
+      const double fraction = row.ramp > 0 ? std::min(time / row.ramp, 1.0) : 1.0;
+      for (const Eigen::Index p : row.particles) {
+        for (std::size_t a = 0; a < Dim; ++a) {
+          particles.external_force[a][p] += static_cast<Real>(fraction * row.force[a]);
+        }
+      }
+    }
+  }
+
+  /// Sets the masses of bodies whose density changes to those at `time` [s].
+  void set_masses(double time, Particles<Dim, Real>& particles) const {
+    for (std::size_t b = 0; b < scene_.bodies.size(); ++b) {
+      const Body& body = scene_.bodies[b];
+      if (!body.density_ramp || time < body.density_ramp->start) continue;
+      const auto density = static_cast<Real>(body.density_at(time));
+      const ParticleRange range = particles.bodies[b];
+      for (Eigen::Index p = range.first; p < range.last; ++p) {
+        particles.mass[p] = density * particles.initial_volume[p];
+      }
+    }
+  }
+
+ private:
+  /// Particles that carry a surface load, and the force on each once it acts in full [N].
+  struct Row {
+    std::vector<Eigen::Index> particles;
+    PerAxis force{};
+    double ramp = 0.0;
+  };
+
+  void find_row(const SurfaceLoad& load, const Particles<Dim, Real>& particles) {
+    const auto body = static_cast<std::size_t>(
+        std::find_if(scene_.bodies.begin(), scene_.bodies.end(),
+                     [&](const Body& candidate) { return candidate.name == load.body; }) -
+        scene_.bodies.begin());
+    const Lattice lattice = lattice_of(scene_, scene_.bodies[body]);
+    Row row{rows_of(load, scene_.bodies[body], lattice), load.traction, load.ramp};
+    for (Eigen::Index& p : row.particles) p += particles.bodies[body].first;
+    const double area = Dim == 1 ? 1.0 : lattice.spacing[static_cast<std::size_t>(1 - load.axis)];
+    for (double& component : row.force) component *= area;
+    rows_.push_back(std::move(row));
+  }
+
+  /// Indices within the body.
+  static std::vector<Eigen::Index> rows_of(const SurfaceLoad& load, const Body& body,
+                                           const Lattice& lattice) {
+    const auto normal = static_cast<std::size_t>(load.axis), along = 1 - normal;
+    const double edge = load.side == 0 ? body.lower[normal] : body.upper[normal];
+    std::vector<Eigen::Index> found;
+    for (std::size_t k = 0; k < lattice.centers.size(); ++k) {
+      const PerAxis& center = lattice.centers[k];
+      if (std::abs(center[normal] - edge) > lattice.spacing[normal]) continue;
+      if (Dim == 2 && (center[along] < load.begin || center[along] > load.end)) continue;
+      found.push_back(static_cast<Eigen::Index>(k));
+    }
+    return found;
+  }
+
+  const Scene scene_;
+  std::vector<Row> rows_;
+  std::vector<PerAxis> start_;  ///< initial places, of a driven motion only
+};
+
+}  // namespace mpm
