@@ -619,7 +619,10 @@ void Canvas::polygon(const std::vector<Point>& corners, const Color& fill) {
 }
 
 void Canvas::rectangle(const Rectangle& r, const Color& fill) {
-  polygon({{r.left, r.top}, {r.right, r.top}, {r.right, r.bottom}, {r.left, r.bottom}}, fill);
+  const Point upper_left{r.left, r.top}, lower_right{r.right, r.bottom};
+  if (!finite(upper_left) || !finite(lower_right)) return;
+  sheet_->triangle(upper_left, {r.right, r.top}, lower_right, fill);
+  sheet_->triangle(upper_left, lower_right, {r.left, r.bottom}, fill);
 }
 
 namespace {

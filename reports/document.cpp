@@ -259,8 +259,8 @@ std::string table_of(const std::string& metric) {
 
 std::string table_title(const std::string& table) {
   if (table.empty()) return "Other measures";
-  if (table == "equilibrium" || table == "hencky" || table == "zhang")
-    return "Against " + name_of_reference(table);
+  const bool is_reference = name_of_reference(table) != escaped(table);
+  if (is_reference) return "Against " + name_of_reference(table);
   if (table == "floor") return "Model-form floor, Zhang − Hencky";
   std::string title = table;
   title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
@@ -291,6 +291,9 @@ std::string column_title(const std::string& metric) {
   return escaped(rest) + suffix + unit;
 }
 
+// A longer table of runs is folded away: it is looked up, not read.
+constexpr std::size_t longest_open_table = 12;
+
 data metric_tables(const vv::CaseVerdict& verdict) {
   std::vector<std::string> names;
   std::map<std::string, std::vector<std::string>> tables;
@@ -316,6 +319,8 @@ data metric_tables(const vv::CaseVerdict& verdict) {
       rows << row;
     }
     table.set("rows", rows);
+    table.set("folded", flag(verdict.runs.size() > longest_open_table));
+    table.set("row_count", std::to_string(verdict.runs.size()));
     result << table;
   }
   return result;
@@ -648,7 +653,7 @@ std::vector<DrawnFigure> draw_figures(const vv::CampaignVerdict& verdict) {
     for (const vv::FigureRequest& request : c.definition.figures) {
       DrawnFigure figure{c.definition.id, request.id, "", 0, ""};
       try {
-        const Picture picture = draw(plot_of(c, request));
+        const Picture picture = picture_of(c, request);
         const std::vector<unsigned char> png = picture.canvas.png();
         figure.png.assign(png.begin(), png.end());
         figure.pixel_width = picture.canvas.pixel_width();

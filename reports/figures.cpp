@@ -113,12 +113,47 @@ std::string spaced(std::string text) {
   return text;
 }
 
+/// What a person calls something that has a name in case files.
+struct Named {
+  const char* name;
+  const char* full;   ///< in a legend, markup
+  const char* brief;  ///< after "against", markup
+};
+
+constexpr Named reference_names[] = {
+    {"equilibrium", "equilibrium, exact for every law", "equilibrium"},
+    {"hencky", "Hencky, exact for the rate law", "Hencky"},
+    {"zhang", "Zhang, the published solution", "Zhang"},
+    {"manufactured", "manufactured solution, exact motion", "the manufactured solution"},
+    {"limit_analysis", "limit analysis, exact limit load", "limit analysis"},
+    {"elastic_strip", "elastic strip, closed form", "the elastic strip"},
+    {"closed_form", "closed form", "the closed form"},
+};
+
+constexpr std::pair<const char*, const char*> metric_names[] = {
+    {"oscillation.hp", "high-pass content HP of the error"},
+    {"oscillation.ns", "null-space content NS of the stress"},
+    {"limit_analysis.overshoot", "overshoot of the exact limit load"},
+    {"elastic_strip.stiffness", "stiffness against the elastic strip"},
+    {"momentum_change", "change of momentum"},
+    {"energy_loss", "loss of energy"},
+    {"bar.frequency", "frequency of the bar"},
+    {"bar.amplitude", "amplitude of the bar"},
+    {"element.yield_excess", "stress beyond yield"},
+};
+
+const Named* named_reference(const std::string& reference) {
+  for (const Named& known : reference_names)
+    if (reference == known.name) return &known;
+  return nullptr;
+}
+
 /// "<i>L</i><sub>2</sub> error of stress" of "hencky.stress.l2", "error of settlement" of
 /// "hencky.settlement"; nothing of a metric that compares with no reference.
 std::string error_name(const std::string& metric) {
   const std::vector<std::string> parts = split(metric, '.');
-  const bool compares =
-      parts[0] == "equilibrium" || parts[0] == "hencky" || parts[0] == "zhang" || parts[0] == "floor";
+  const bool compares = parts[0] == "equilibrium" || parts[0] == "hencky" || parts[0] == "zhang" ||
+                        parts[0] == "manufactured" || parts[0] == "floor";
   if (!compares || parts.size() < 2) return "";
   return (parts.size() > 2 ? norm_name(parts[2]) + " error of " : "error of ") + escaped(spaced(parts[1]));
 }
@@ -129,7 +164,8 @@ std::string capitalised(std::string text) {
 }
 
 std::string short_name_of_reference(const std::string& reference) {
-  return reference == "equilibrium" ? reference : escaped(capitalised(reference));
+  const Named* known = named_reference(reference);
+  return known ? known->brief : escaped(capitalised(reference));
 }
 
 // ---- choosing and grouping runs
@@ -260,7 +296,8 @@ std::string joined(std::string list, std::string next) {
 /// Where a run that the solver ended stopped: " at step 120, <i>t</i> = 0.5 s".
 std::string place_of_ending(const vv::Record& record) {
   if (!record.failure.empty()) return "";
-  return fmt::format(" at step {}, <i>t</i> = {:.3g} s", record.outcome.step, record.outcome.time);
+  return fmt::format(" at step {}, <i>t</i>\u00a0=\u00a0{:.3g}\u00a0s", record.outcome.step,
+                     record.outcome.time);
 }
 
 /// One note for all runs of a series that ended alike; `missing` says which runs have nothing to show.
@@ -480,6 +517,17 @@ Panel profile_panel(const std::vector<Member>& members, const vv::FigureRequest&
 // ---- histories
 // --------------------------------------------------------------------------------------------------
 
+/// Curves of runs often all but coincide: the solid line lies wide beneath, the dashed ones over it.
+Look line_look(const Member& member) {
+  Look look = look_of_series(member.look);
+  look.marker = MarkerShape::none;
+  if (look.dash.empty()) look.line_width = 2.4;
+  return look;
+}
+
+/// Short dashes over long ones over solid lines.
+int layer_of(const Look& look) { return look.dash.empty() ? 0 : look.dash.size() > 2 ? 1 : 2; }
+
 Panel history_panel(const std::vector<Member>& members, const vv::CaseVerdict& verdict,
                     const vv::FigureRequest& request, const std::string& title) {
   Panel panel;
@@ -497,21 +545,15 @@ Panel history_panel(const std::vector<Member>& members, const vv::CaseVerdict& v
   Extent times;
   times.include(0.0);
   const auto add = [&](const vv::Curve& curve, const std::string& label, const Look& look) {
-    // Short dashes over long ones over solid lines.
-    const int layer = look.dash.empty() ? 0 : look.dash.size() > 2 ? 1 : 2;
-    PlotCurve plotted{label, look, curve.x, curve.y, layer};
+    PlotCurve plotted{label, look, curve.x, curve.y, layer_of(look)};
     for (double& value : plotted.y) value *= quantity.factor;
     for (const double t : plotted.x) times.include(t);
     extents.push_back(extent_of(plotted.y));
     panel.curves.push_back(std::move(plotted));
   };
   for (const Member& member : members) {
-    // Histories all but coincide: the solid line lies wide beneath, the dashed ones over it.
-    Look look = look_of_series(member.look);
-    look.marker = MarkerShape::none;
-    if (look.dash.empty()) look.line_width = 2.4;
     if (const vv::Curve* curve = curve_of(*member.run, request.quantity, "run"))
-      add(*curve, member.series, look);
+      add(*curve, member.series, line_look(member));
   }
   for (std::size_t i = 0; i < request.references.size(); ++i)
     for (const vv::Curve* curve : reference_curves(members, request.quantity, request.references[i]))
@@ -521,6 +563,344 @@ Panel history_panel(const std::vector<Member>& members, const vv::CaseVerdict& v
   panel.notes =
       notes_on_runs(members, [&](const Member& m) { return !curve_of(*m.run, request.quantity, "run"); });
   return panel;
+}
+
+// ---- curves over anything
+// ------------------------------------------------------------------------------------------
+
+/// How values in an SI unit are shown whose largest is `reach`: in the prefix that leaves few digits.
+/// Pressures stay in kPa up to 20 MPa, as geotechnical engineers write them.
+Quantity shown_unit(const std::string& unit, double reach) {
+  if (unit == "Pa") {
+    if (reach < 100.0) return {1.0, "Pa"};
+    if (reach < 2e7) return {1e-3, "kPa"};
+    return reach < 2e10 ? Quantity{1e-6, "MPa"} : Quantity{1e-9, "GPa"};
+  }
+  if (unit == "m" || unit == "m/s") {
+    if (reach < 1e-4) return {1e6, "µ" + unit};
+    return reach < 1.0 ? Quantity{1e3, "m" + unit} : Quantity{1.0, unit};
+  }
+  if (unit == "-") return reach < 1.0 ? Quantity{100.0, "%"} : Quantity{1.0, "–"};
+  return {1.0, escaped(unit)};
+}
+
+/// What stands along an axis: words in markup, and an SI unit.
+struct AxisWords {
+  std::string words, unit;
+};
+
+AxisWords words_of_curve(const std::string& name) {
+  static const std::map<std::string, AxisWords> known{
+      {"pressure", {"pressure", "Pa"}},
+      {"settlement", {"settlement", "m"}},
+      {"relative_settlement", {"settlement / width", "-"}},
+      {"time", {"time <i>t</i>", "s"}},
+      {"strain", {"strain <i>ε</i>", "-"}},
+      {"position", {"height <i>x</i>", "m"}},
+      {"initial_position", {"initial height <i>X</i>", "m"}},
+      {"displacement", {"displacement <i>u</i>", "m"}},
+      {"velocity", {"velocity <i>v</i>", "m/s"}},
+      {"stress", {"stress <i>σ</i>", "Pa"}},
+      {"stress_xx", {"stress <i>σ<sub>xx</sub></i>", "Pa"}},
+      {"stress_yy", {"stress <i>σ<sub>yy</sub></i>", "Pa"}},
+      {"stress_zz", {"stress <i>σ<sub>zz</sub></i>", "Pa"}},
+      {"stress_xy", {"shear stress <i>σ<sub>xy</sub></i>", "Pa"}},
+      {"q", {"deviatoric stress <i>q</i>", "Pa"}},
+      {"p", {"mean stress <i>p</i>", "Pa"}},
+  };
+  const auto found = known.find(name);
+  return found == known.end() ? AxisWords{escaped(spaced(name)), ""} : found->second;
+}
+
+/// Puts values in the unit that suits their reach and names the axis after it.
+double set_unit(Axis& axis, const std::string& name, double reach) {
+  const AxisWords words = words_of_curve(name);
+  const Quantity shown = shown_unit(words.unit, reach);
+  axis.label = words.words + (words.unit.empty() ? "" : " [" + shown.label + "]");
+  return shown.factor;
+}
+
+/// The names of the reference solutions drawn beside a quantity: those asked for, or all there are.
+std::vector<std::string> references_of(const std::vector<Member>& members, const vv::FigureRequest& request) {
+  if (!request.references.empty()) return request.references;
+  std::vector<std::string> names;
+  for (const Member& member : members)
+    for (const vv::Curve& curve : member.run->curves)
+      if (curve.name == request.quantity && curve.source != "run" &&
+          std::find(names.begin(), names.end(), curve.source) == names.end())
+        names.push_back(curve.source);
+  return names;
+}
+
+Look dashed_reference_look(std::size_t number) {
+  static const std::vector<std::vector<double>> dashes{{5.0, 2.5}, {1.6, 1.6}, {8.0, 2.0, 1.6, 2.0}};
+  Look look;
+  const double grey = number % 2 == 0 ? 0.0 : 0.45;
+  look.color = {grey, grey, grey, 1.0};
+  look.line_width = 1.1;
+  look.dash = dashes[number % dashes.size()];
+  return look;
+}
+
+/// A curve of the verdict in its place in the picture.
+struct Line {
+  const vv::Curve* curve = nullptr;
+  std::string label;
+  Look look;
+  int layer = 0;
+};
+
+std::vector<Line> lines_of(const std::vector<Member>& members, const vv::FigureRequest& request) {
+  std::vector<Line> lines;
+  for (const Member& member : members)
+    if (const vv::Curve* curve = curve_of(*member.run, request.quantity, "run")) {
+      const Look look = line_look(member);
+      lines.push_back({curve, member.series, look, layer_of(look)});
+    }
+  const std::vector<std::string> references = references_of(members, request);
+  for (std::size_t i = 0; i < references.size(); ++i)
+    for (const vv::Curve* curve : reference_curves(members, request.quantity, references[i]))
+      lines.push_back({curve, name_of_reference(references[i]), dashed_reference_look(i), 3});
+  return lines;
+}
+
+/// The tame part of values that start at zero or go through it, with room at the ends that are not zero.
+Range range_from_zero(const std::vector<Extent>& extents) {
+  Extent tame = tame_extent(extents);
+  tame.include(0.0);
+  const Range wide = tame.widened(0.06);
+  return {tame.lower < 0.0 ? wide.lower : 0.0, tame.upper > 0.0 || tame.lower >= 0.0 ? wide.upper : 0.0};
+}
+
+/// A load–settlement curve is drawn as geotechnical engineers do: the load to the right, the settlement down.
+Panel curve_panel(const std::vector<Member>& members, const vv::FigureRequest& request,
+                  const std::string& title) {
+  const std::vector<Line> lines = lines_of(members, request);
+  Panel panel;
+  panel.title = title;
+  std::vector<Extent> across, along;
+  for (const Line& line : lines) {
+    across.push_back(extent_of(line.curve->x));
+    along.push_back(extent_of(line.curve->y));
+  }
+  const std::string x_name = lines.empty() ? "" : lines.front().curve->x_name;
+  const bool settles = request.quantity == "pressure";
+  Axis& x = settles ? panel.y : panel.x;
+  Axis& y = settles ? panel.x : panel.y;
+  const Range x_range = range_from_zero(across), y_range = range_from_zero(along);
+  const double x_factor = set_unit(x, x_name, std::max(-x_range.lower, x_range.upper));
+  const double y_factor = set_unit(y, request.quantity, std::max(-y_range.lower, y_range.upper));
+  x.range = {x_range.lower * x_factor, x_range.upper * x_factor};
+  y.range = {y_range.lower * y_factor, y_range.upper * y_factor};
+  x.reversed = settles;
+  for (const Line& line : lines) {
+    PlotCurve curve{line.label, line.look, line.curve->x, line.curve->y, line.layer};
+    for (double& value : curve.x) value *= x_factor;
+    for (double& value : curve.y) value *= y_factor;
+    if (settles) std::swap(curve.x, curve.y);
+    panel.curves.push_back(std::move(curve));
+  }
+  panel.notes =
+      notes_on_runs(members, [&](const Member& m) { return !curve_of(*m.run, request.quantity, "run"); });
+  return panel;
+}
+
+// ---- fields
+// -----------------------------------------------------------------------------------------------------
+
+constexpr double scale_percentile = 0.995;  // where a colour scale ends if a few values lie far beyond
+constexpr double far_beyond = 0.5;          // of the span between the percentiles
+constexpr double view_percentile = 0.999;   // of the places, on either side
+
+/// Markup of a field's name; it never ends in a unit.
+std::string name_of_field(const std::string& quantity) {
+  static const std::map<std::string, std::string> known{
+      {"displacement", "displacement |<i>u</i>|"},
+      {"displacement_x", "displacement <i>u<sub>x</sub></i>"},
+      {"displacement_y", "displacement <i>u<sub>y</sub></i>"},
+      {"speed", "speed |<i>v</i>|"},
+      {"stress_xx", "stress <i>σ<sub>xx</sub></i>, tension positive"},
+      {"stress_yy", "stress <i>σ<sub>yy</sub></i>, tension positive"},
+      {"stress_zz", "stress <i>σ<sub>zz</sub></i>, tension positive"},
+      {"stress_xy", "shear stress <i>σ<sub>xy</sub></i>"},
+      {"mean_stress", "mean stress, tension positive"},
+      {"max_shear_stress", "largest shear stress in the plane"},
+      {"max_shear_strain", "largest shear strain in the plane <i>γ</i>"},
+  };
+  const auto found = known.find(quantity);
+  return found == known.end() ? escaped(spaced(quantity)) : found->second;
+}
+
+/// The value below which a part of the values lies; they become partly sorted.
+double percentile(std::vector<double>& values, double part) {
+  const auto at = static_cast<std::ptrdiff_t>(std::llround(part * static_cast<double>(values.size() - 1)));
+  std::nth_element(values.begin(), values.begin() + at, values.end());
+  return values[static_cast<std::size_t>(at)];
+}
+
+/// The part of one axis to show: all particles, or nearly all when a few that flew off would shrink the rest.
+Range view_range(const std::vector<const vv::FieldMap*>& maps,
+                 const std::vector<double> vv::FieldMap::*center,
+                 const std::vector<double> vv::FieldMap::*half_size) {
+  std::vector<double> centers;
+  Extent whole;
+  double largest = 0.0;
+  for (const vv::FieldMap* map : maps)
+    for (std::size_t p = 0; p < map->value.size(); ++p) {
+      const double at = (map->*center)[p], half = (map->*half_size)[p];
+      if (!std::isfinite(at) || !std::isfinite(half)) continue;
+      centers.push_back(at);
+      whole.include(at - half);
+      whole.include(at + half);
+      largest = std::max(largest, half);
+    }
+  if (centers.empty()) return {0.0, 1.0};
+  const double lower = percentile(centers, 1.0 - view_percentile) - largest,
+               upper = percentile(centers, view_percentile) + largest;
+  if (whole.upper - whole.lower > 1.5 * (upper - lower)) return Extent{lower, upper}.widened(0.05);
+  return {whole.lower, whole.upper};
+}
+
+/// Where the colours of values between `lower` and `upper` (lower <= upper) begin and end.
+ColorScale scale_between(const std::string& quantity, double lower, double upper) {
+  ColorScale scale;
+  const double reach = std::max(std::abs(lower), std::abs(upper));
+  const bool both_signs = lower < 0.0 && upper > 0.0 && std::min(-lower, upper) >= 0.1 * reach;
+  const bool of_either_sign = quantity == "stress_xy" || quantity == "displacement_x";
+  if (both_signs || of_either_sign) {
+    scale.map = ColorMap::diverging;
+    scale.range = {-reach, reach};
+  } else {
+    // A scale that leaves zero out shows small differences, and hides how small they are.
+    const bool varies_little = std::min(std::abs(lower), std::abs(upper)) > 0.5 * reach;
+    scale.range = varies_little ? Range{lower, upper} : Range{std::min(lower, 0.0), std::max(upper, 0.0)};
+  }
+  if (!(scale.range.upper > scale.range.lower)) scale.range = {lower - 0.5 * reach, upper + 0.5 * reach};
+  if (!(scale.range.upper > scale.range.lower)) scale.range = {0.0, 1.0};
+  return scale;
+}
+
+/// The scale of the tame values together. It ends at a percentile on the side where a few lie far beyond;
+/// what of all values lies beyond its ends is told.
+ColorScale color_scale(const std::vector<const vv::FieldMap*>& tame,
+                       const std::vector<const vv::FieldMap*>& all, const vv::FieldQuantity& quantity) {
+  std::vector<double> values;
+  for (const vv::FieldMap* map : tame)
+    std::copy_if(map->value.begin(), map->value.end(), std::back_inserter(values),
+                 [](double v) { return std::isfinite(v); });
+  if (values.empty()) values = {0.0};
+  const auto [smallest, largest] = std::minmax_element(values.begin(), values.end());
+  const double tame_least = *smallest, tame_most = *largest;
+  double lower = percentile(values, 1.0 - scale_percentile), upper = percentile(values, scale_percentile);
+  const double far = far_beyond * (upper - lower);
+  if (tame_most - upper <= far) upper = tame_most;
+  if (lower - tame_least <= far) lower = tame_least;
+  ColorScale scale = scale_between(quantity.name, lower, upper);
+  const Quantity shown =
+      shown_unit(quantity.unit, std::max(std::abs(scale.range.lower), std::abs(scale.range.upper)));
+  scale.factor = shown.factor;
+  scale.label = name_of_field(quantity.name) + " [" + shown.label + "]";
+  Extent everything;
+  for (const vv::FieldMap* map : all)
+    for (const double value : map->value) everything.include(value);
+  if (everything.lower < scale.range.lower) scale.below = everything.lower * shown.factor;
+  if (everything.upper > scale.range.upper) scale.above = everything.upper * shown.factor;
+  scale.range = {scale.range.lower * shown.factor, scale.range.upper * shown.factor};
+  return scale;
+}
+
+/// The moments at which the runs were kept, as the run that has most of them orders them.
+std::vector<std::string> moments_of(std::vector<Member> members) {
+  std::stable_sort(members.begin(), members.end(), [](const Member& a, const Member& b) {
+    return a.run->record.snapshots.size() > b.run->record.snapshots.size();
+  });
+  std::vector<std::string> moments;
+  for (const Member& member : members)
+    for (const vv::Snapshot& snapshot : member.run->record.snapshots)
+      if (std::find(moments.begin(), moments.end(), snapshot.moment) == moments.end())
+        moments.push_back(snapshot.moment);
+  return moments;
+}
+
+/// The run at the moment, or a note why it cannot be shown.
+FieldPanel field_panel(const Member& member, const std::string& moment, const std::string& quantity) {
+  FieldPanel panel;
+  const vv::Record& record = member.run->record;
+  const auto snapshot = std::find_if(record.snapshots.begin(), record.snapshots.end(),
+                                     [&moment](const vv::Snapshot& s) { return s.moment == moment; });
+  if (snapshot != record.snapshots.end()) {
+    try {
+      panel.map = vv::map_of(*snapshot, quantity);
+    } catch (const std::invalid_argument& reason) {
+      panel.note = escaped(reason.what());
+    }
+  } else if (!record.completed()) {
+    panel.note = "did not complete: " + name_of_ending(record) + place_of_ending(record);
+  } else {
+    panel.note = "completed, but kept no snapshot" + (moment.empty() ? "" : " at " + escaped(moment));
+  }
+  return panel;
+}
+
+std::string name_in_row(const Member& member) {
+  if (member.panel.empty()) return member.series == "simulation" ? "" : member.series;
+  return member.panel + (member.series == "simulation" ? "" : ", " + member.series);
+}
+
+/// Runs in rows and moments in columns; with one of either alone, the panels flow as they fill the page best.
+void set_names(FieldPlot& plot, const std::vector<Member>& members, const std::vector<std::string>& moments) {
+  const bool one_moment = moments.size() == 1, one_run = members.size() == 1;
+  for (std::size_t i = 0; i < plot.panels.size(); ++i) {
+    const std::size_t row = i / moments.size(), column = i % moments.size();
+    if (one_run && !one_moment)
+      plot.panels[i].title = escaped(moments[column]);
+    else if (column == 0)
+      plot.panels[i].title = name_in_row(members[row]);
+  }
+  if (one_run && !one_moment)
+    plot.heads = {name_in_row(members.front())};
+  else
+    for (const std::string& moment : moments) plot.heads.push_back(escaped(moment));
+  if (std::all_of(plot.heads.begin(), plot.heads.end(), [](const std::string& h) { return h.empty(); }))
+    plot.heads.clear();
+  plot.columns = one_run || one_moment ? best_columns(plot) : static_cast<int>(moments.size());
+}
+
+/// How many of the values drawn the colour scale cannot tell from its ends: "3 of 1800".
+std::string beyond_scale(const FieldPlot& plot) {
+  std::size_t beyond = 0, all = 0;
+  for (const FieldPanel& panel : plot.panels) {
+    if (!panel.map) continue;
+    for (const double value : panel.map->value) {
+      const double shown = value * plot.scale.factor;
+      beyond += shown < plot.scale.range.lower || shown > plot.scale.range.upper;
+      ++all;
+    }
+  }
+  return fmt::format("{} of {}", beyond, all);
+}
+
+/// What a reader of the picture must know beside it.
+void set_notes(FieldPlot& plot, const std::vector<Member>& members, const vv::CaseVerdict& verdict,
+               std::size_t moments, std::size_t came_about) {
+  if (plot.scale.above || plot.scale.below)
+    plot.notes.push_back(fmt::format(
+        "The colour scale covers at least percentiles {:g} to {:g} of the values of completed runs. "
+        "Beyond it lie {} values drawn; the outermost stands beside the arrow.",
+        100.0 * (1.0 - scale_percentile), 100.0 * scale_percentile, beyond_scale(plot)));
+  for (std::size_t m = 0; m < members.size(); ++m) {
+    const vv::Record& record = members[m].run->record;
+    const auto first = plot.panels.begin() + static_cast<std::ptrdiff_t>(m * moments);
+    const bool shown = std::any_of(first, first + static_cast<std::ptrdiff_t>(moments),
+                                   [](const FieldPanel& panel) { return panel.map.has_value(); });
+    if (!record.completed() && shown)
+      plot.notes.push_back(fmt::format("{} did not complete: {}{}; shown is what was kept before.",
+                                       members[m].series, name_of_ending(record), place_of_ending(record)));
+  }
+  const std::size_t asked = verdict.definition.snapshots.size();
+  if (came_about < asked)
+    plot.notes.push_back(
+        fmt::format("Of {} snapshots asked for, {} came about in no run.", asked, asked - came_about));
 }
 
 // ---- metrics
@@ -801,15 +1181,16 @@ std::string name_of_run(const Parameters& parameters) {
 }
 
 std::string name_of_reference(const std::string& reference) {
-  if (reference == "equilibrium") return "equilibrium, exact for every law";
-  if (reference == "hencky") return "Hencky, exact for the rate law";
-  if (reference == "zhang") return "Zhang, the published solution";
-  return escaped(reference);
+  const Named* known = named_reference(reference);
+  return known ? known->full : escaped(reference);
 }
 
 std::string name_of_metric(const std::string& metric) {
-  if (metric == "oscillation.hp") return "high-pass content HP of the error";
-  if (metric == "oscillation.ns") return "null-space content NS of the stress";
+  for (const auto& [name, words] : metric_names)
+    if (metric == name) return words;
+  const std::string relation = "metamorphic.";
+  if (metric.starts_with(relation))
+    return "difference under " + escaped(spaced(metric.substr(relation.size())));
   const std::string error = error_name(metric);
   if (error.empty()) return escaped(spaced(metric));
   const std::string reference = metric.substr(0, metric.find('.'));
@@ -886,6 +1267,10 @@ Plot plot_of(const vv::CaseVerdict& verdict, const vv::FigureRequest& request) {
     plot.frame_aspect = 0.68;
     for (const std::string& name : panels)
       plot.panels.push_back(history_panel(in_panel(members, name), verdict, request, name));
+  } else if (request.kind == "curves") {
+    plot.frame_aspect = 0.8;
+    for (const std::string& name : panels)
+      plot.panels.push_back(curve_panel(in_panel(members, name), request, name));
   } else if (request.kind == "convergence") {
     plot.frame_aspect = 0.9;
     for (const std::string& name : panels)
@@ -897,7 +1282,7 @@ Plot plot_of(const vv::CaseVerdict& verdict, const vv::FigureRequest& request) {
       for (const std::string& metric : request.metrics)
         plot.panels.push_back(bar_panel(members, verdict, metric));
   } else {
-    throw std::invalid_argument("a figure cannot be of kind \"" + request.kind + "\"");
+    throw std::invalid_argument("a plot cannot be of kind \"" + request.kind + "\"");
   }
   plot.columns = plot.panels.size() > 1 ? 2 : 1;
   if (plot.columns == 1) plot.width = 340.0;
@@ -908,6 +1293,45 @@ Plot plot_of(const vv::CaseVerdict& verdict, const vv::FigureRequest& request) {
   }
   plot.stamp = stamp_of(verdict, members);
   return plot;
+}
+
+FieldPlot field_plot_of(const vv::CaseVerdict& verdict, const vv::FigureRequest& request) {
+  const auto& catalogue = vv::field_catalogue();
+  const auto quantity =
+      std::find_if(catalogue.begin(), catalogue.end(),
+                   [&request](const vv::FieldQuantity& q) { return q.name == request.quantity; });
+  if (quantity == catalogue.end())
+    throw std::invalid_argument("no field is called \"" + request.quantity + "\"");
+  const std::vector<Member> members = members_of(verdict, request);
+  std::vector<std::string> moments = moments_of(members);
+  const std::size_t came_about = moments.size();
+  if (moments.empty()) moments = {""};
+  FieldPlot plot;
+  for (const Member& member : members)
+    for (const std::string& moment : moments)
+      plot.panels.push_back(field_panel(member, moment, request.quantity));
+  // A run that went wild decides neither what is seen nor in which colours.
+  std::vector<const vv::FieldMap*> tame, all;
+  for (std::size_t i = 0; i < plot.panels.size(); ++i) {
+    if (!plot.panels[i].map) continue;
+    all.push_back(&*plot.panels[i].map);
+    if (members[i / moments.size()].run->record.completed()) tame.push_back(all.back());
+  }
+  if (tame.empty()) tame = all;
+  plot.x = view_range(tame, &vv::FieldMap::x, &vv::FieldMap::half_x);
+  plot.y = view_range(tame, &vv::FieldMap::y, &vv::FieldMap::half_y);
+  plot.scale = color_scale(tame, all, *quantity);
+  if (members.empty())
+    plot.panels.push_back({"", std::nullopt, "No run was selected for this figure."});
+  else
+    set_names(plot, members, moments);
+  set_notes(plot, members, verdict, moments.size(), came_about);
+  plot.stamp = stamp_of(verdict, members);
+  return plot;
+}
+
+Picture picture_of(const vv::CaseVerdict& verdict, const vv::FigureRequest& request) {
+  return request.kind == "fields" ? draw(field_plot_of(verdict, request)) : draw(plot_of(verdict, request));
 }
 
 }  // namespace mpm::reports

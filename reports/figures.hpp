@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "reports/field.hpp"
 #include "reports/plot.hpp"
 #include "vv/verdict.hpp"
 
@@ -20,7 +21,7 @@ std::string name_of_run(const std::vector<std::pair<std::string, vv::Json>>& par
 /// What a metric measures, in markup short enough for an axis; an unknown metric keeps its own name.
 std::string name_of_metric(const std::string& metric);
 
-/// Markup for a reference solution: equilibrium, hencky, zhang, or its own name.
+/// Markup for a reference solution; an unknown one keeps its own name.
 std::string name_of_reference(const std::string& reference);
 
 /// How a run ended, a few words for a person: "a particle left the grid"; of a run that failed, why.
@@ -34,16 +35,36 @@ std::string number_markup(double value, int digits = 3);
 /// "–".
 std::string orders_markup(const std::vector<double>& orders);
 
-/// The picture a request asks for, drawn from the curves and metrics of the verdict and from nothing else.
+/// The plot a request of any kind but `fields` asks for, drawn from the curves and metrics of the verdict and
+/// from nothing else.
 ///
 /// - Axes of profiles cover the reference solutions plus 12 % of their range, whatever the runs did; without
 /// a
-///   reference, and for histories, they cover every series whose extreme is at most 30 times the next tamer
-///   one's.
+///   reference, for histories and for curves, they cover every series whose extreme is at most 30 times the
+///   next tamer one's.
 /// - Logarithmic axes of metrics end at 10 (1000 %).
+/// - Curves of pressure have the load to the right and the settlement downwards.
 /// - Runs that did not complete or lack a curve are named in a note under their panel.
 ///
 /// Throws std::invalid_argument for a kind it does not know.
 Plot plot_of(const vv::CaseVerdict& verdict, const vv::FigureRequest& request);
+
+/// The picture a request of kind `fields` asks for: a row for every run selected, a column for every moment
+/// at which runs were kept.
+///
+/// - The view covers all particles of the runs that completed; without any, of all. Should a few particles
+/// have
+///   flown so far that all others would shrink by a third or more, the outermost 0.1 % are left out and
+///   counted.
+/// - The colours cover all their values, or all but the outermost 0.5 % at an end beyond which a few lie
+///   farther than half of the rest's span: then the scale says so and names the outermost value. Values of
+///   both signs, the shear stress and the horizontal displacement have a scale with zero in its middle.
+/// - A run that did not complete, or has no such snapshot, has its reason in the panel's place.
+///
+/// Throws std::invalid_argument for a quantity that is no field.
+FieldPlot field_plot_of(const vv::CaseVerdict& verdict, const vv::FigureRequest& request);
+
+/// Draws what a request of any kind asks for. Throws as the two above, and CanvasError.
+Picture picture_of(const vv::CaseVerdict& verdict, const vv::FigureRequest& request);
 
 }  // namespace mpm::reports

@@ -7,46 +7,23 @@
 #include <limits>
 #include <optional>
 
+#include "reports/typography.hpp"
+
 namespace mpm::reports {
 namespace {
 
-// Sizes in points. Type is at least 9 pt everywhere but in the stamp.
-constexpr double type_size = 9.0;
-constexpr double title_size = 9.5;
-constexpr double stamp_size = 6.5;
-constexpr double line_height = 12.0;
-constexpr double axis_width = 0.7;
-constexpr double major_tick = 4.0;
+// Sizes in points.
 constexpr double minor_tick = 2.2;
-constexpr double tick_gap = 3.5;
-constexpr double outer_margin = 7.0;
 constexpr double column_gap = 16.0;
 constexpr double row_gap = 13.0;
 constexpr double edge_mark = 5.0;
 
-const Color ink{0.1, 0.1, 0.1, 1.0};
-const Color muted{0.36, 0.36, 0.36, 1.0};
 const Color grid_color{0.905, 0.905, 0.905, 1.0};
-
-TextStyle text_style(Horizontal horizontal, Vertical vertical, double size = type_size,
-                     const Color& color = ink) {
-  TextStyle style;
-  style.size = size;
-  style.color = color;
-  style.horizontal = horizontal;
-  style.vertical = vertical;
-  return style;
-}
-
-double text_width(const std::string& markup, double size = type_size) {
-  TextStyle style;
-  style.size = size;
-  return markup.empty() ? 0.0 : Canvas::measure(markup, style).width;
-}
 
 /// Where a value stands along an axis: 0 at the lower end, 1 at the upper one; may be infinite or NaN.
 double fraction(const Axis& axis, double value) {
   const auto [lower, upper] = axis.range;
+  if (axis.reversed) return (upper - value) / (upper - lower);
   if (axis.scale == Scale::linear) return (value - lower) / (upper - lower);
   if (value <= 0.0) return -std::numeric_limits<double>::infinity();
   return std::log(value / lower) / std::log(upper / lower);
@@ -200,12 +177,6 @@ Placed measured(const Panel& panel, double frame_guess, double aspect) {
   placed.top_room = 17.0;
   placed.bottom_room = tick_gap + line_height + (panel.x.label.empty() ? 0.0 : line_height + 2.0);
   return placed;
-}
-
-TextStyle note_style(double width) {
-  TextStyle style = text_style(Horizontal::left, Vertical::top, type_size, muted);
-  style.wrap_width = width;
-  return style;
 }
 
 double notes_height(const std::vector<std::string>& notes, double width) {
@@ -777,7 +748,7 @@ Picture draw(const Plot& plot, double pixels_per_point) {
                                                left[i % columns] + frame_width));
   if (!legend.empty()) picture.layout.legend = draw_legend(picture.canvas, legend, legend_top);
   picture.canvas.text({plot.width - outer_margin, picture.canvas.height() - 4.0}, plot.stamp,
-                      text_style(Horizontal::right, Vertical::baseline, stamp_size, {0.55, 0.55, 0.55, 1.0}));
+                      text_style(Horizontal::right, Vertical::baseline, stamp_size, stamp_color));
   return picture;
 }
 

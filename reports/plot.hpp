@@ -36,6 +36,7 @@ struct Axis {
   Range range;
   /// Labelled ticks at given places, instead of round ones; may be empty.
   std::vector<std::pair<double, std::string>> ticks;
+  bool reversed = false;  ///< the upper limit stands at the left or at the bottom; linear axes only
 };
 
 /// How a curve or a bar looks. Styles of one picture differ in colour and in shape, dash or hatching, so that

@@ -149,6 +149,32 @@ TEST(Document, LeavesNoTemplateTagsBehind) {
   EXPECT_FALSE(has(html, "}}"));
 }
 
+TEST(Document, FoldsLongTablesOfNormsAndLeavesShortOnesOpen) {
+  vv::CampaignVerdict campaign = support::demo_campaign();
+  campaign.cases.resize(1);
+  ASSERT_EQ(campaign.cases[0].runs.size(), 12U);
+  EXPECT_FALSE(has(report_html(campaign, {}), "<details class=\"norms\""));
+  campaign.cases[0].runs.push_back(campaign.cases[0].runs.back());
+  const std::string html = report_html(campaign, {});
+  EXPECT_TRUE(has(
+      html, "<details class=\"norms\">\n<summary>Against Hencky, exact for the rate law: table of 13 runs"));
+  std::size_t opened = 0, closed = 0;
+  for (std::size_t at = 0; (at = html.find("<details", at)) != std::string::npos; ++at) ++opened;
+  for (std::size_t at = 0; (at = html.find("</details>", at)) != std::string::npos; ++at) ++closed;
+  EXPECT_EQ(opened, closed);
+}
+
+TEST(Document, EmbedsFieldsAndCurvesLikeOtherFigures) {
+  vv::CampaignVerdict campaign = support::demo_campaign();
+  campaign.cases = {support::demo_footing(20)};
+  const auto figures = draw_figures(campaign);
+  ASSERT_EQ(figures.size(), 3U);
+  for (const DrawnFigure& figure : figures) EXPECT_EQ(figure.failure, "");
+  const std::string html = report_html(campaign, figures);
+  EXPECT_TRUE(has(html, "<figure id=\"strip_footing-shear\">\n<img src=\"data:image/png;base64,iVBOR"));
+  EXPECT_TRUE(has(html, "Against limit analysis, exact limit load"));
+}
+
 TEST(Document, TellsWhenAFigureCouldNotBeDrawn) {
   const std::string html =
       report_html(support::demo_campaign(), {{"column_figure_1", "stress", "", 0, "no renderer"}});
