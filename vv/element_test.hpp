@@ -68,7 +68,8 @@ std::map<std::string, double> judge_element_curves(const ElementTest& test,
 /// A metric of element tests, without unit.
 struct ElementMetric {
   std::string name;
-  std::string meaning;  ///< one line for a person
+  bool needs_closed_form;  ///< of a path; else of the law itself
+  std::string meaning;     ///< one line for a person
 };
 
 /// Every metric of element tests, in the order a report lists them.

@@ -299,6 +299,8 @@ double count_non_finite(const Record& record) {
   const Profile& p = record.profile;
   for (const Values* field : {&p.position, &p.displacement, &p.stress, &p.volume, &p.half_size}) add(*field);
   for (const History& history : record.histories) add(history.value);
+  for (const ElementCurve& path : record.paths) add(path.value);
+  for (const auto& [name, value] : record.measured) add({value});
   return count;
 }
 
@@ -375,7 +377,26 @@ std::vector<Metric> make_catalogue() {
   all.push_back({"completed", "-", "", "1 if the run ended where it was meant to, else 0"});
   all.push_back({"steps", "-", "", "time steps done"});
   all.push_back({"particle_steps", "-", "", "time steps times particles: the noise-free cost"});
+  for (const ElementMetric& metric : element_metrics()) {
+    all.push_back({metric.name, "-", metric.needs_closed_form ? "closed_form" : "", metric.meaning});
+  }
   return all;
+}
+
+/// An element test is judged by its curves; what only the law could tell has been measured already.
+Judgement judge_element(const ElementTest& test, const Record& record) {
+  Judgement result;
+  result.metrics = record.measured;
+  result.metrics.merge(judge_element_curves(test, record.paths));
+  result.metrics["completed"] = record.completed() ? 1 : 0;
+  result.metrics["steps"] = static_cast<double>(record.cost.steps);
+  result.metrics["non_finite_values"] = count_non_finite(record);
+  std::erase_if(result.metrics, [](const auto& metric) { return !std::isfinite(metric.second); });
+  for (const ElementCurve& path : record.paths)
+    result.curves.push_back({path.id, "run", path.strain, path.value, "strain"});
+  for (const ElementCurve& path : closed_form(test, record.paths))
+    result.curves.push_back({path.id, "closed_form", path.strain, path.value, "strain"});
+  return result;
 }
 
 }  // namespace
@@ -386,12 +407,13 @@ const std::vector<Metric>& metric_catalogue() {
 }
 
 const std::vector<std::string>& reference_catalogue() {
-  static const std::vector<std::string> catalogue{"equilibrium", "hencky", "zhang"};
+  static const std::vector<std::string> catalogue{"equilibrium", "hencky", "zhang", "closed_form"};
   return catalogue;
 }
 
 std::string why_unsuited(const std::string& reference, const Scene& scene) {
-  // Every reference solution there is describes a column under its own weight.
+  if (reference == "closed_form") return "an element test";
+  // Every other reference solution there is describes a column under its own weight.
   const Body& body = scene.bodies.front();
   const std::size_t axis = axis_of(scene);
   const std::string name = axis == 0 ? "x" : "y";
@@ -413,7 +435,13 @@ std::string why_unsuited(const std::string& reference, const Scene& scene) {
   return "";
 }
 
+std::string why_unsuited(const std::string& reference, const RunRequest& request) {
+  if (!request.element) return why_unsuited(reference, request.scene);
+  return reference == "closed_form" ? "" : "a scene";
+}
+
 Judgement judge(const Case& definition, const RunRequest& request, const Record& record) {
+  if (request.element) return judge_element(*request.element, record);
   Judging judging{
       definition, request.scene, record, column_of(request.scene), heights_of(request.scene, record.profile),
       {}};

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -67,6 +68,8 @@ struct Record {
   Profile profile;
   std::vector<History> histories;
   std::vector<Snapshot> snapshots;  ///< in the order they were taken
+  std::vector<ElementCurve> paths;  ///< of an element test, over the imposed strain
+  std::map<std::string, double> measured;  ///< metrics of an element test that only the law itself can tell
   Cost cost;
 
   /// The run ended where it was meant to: its final state can be judged.
@@ -95,7 +98,7 @@ class Abandoned : public std::runtime_error {
 /// Runs one request of a case to its end and records it, probes included: each samples the first step, the
 /// step nearest to every multiple of its interval, and the last step. A snapshot whose moment does not come is
 /// left out. `cost.wall_seconds` covers the steps only. Throws SceneError, std::bad_alloc, and Abandoned when
-/// `pulse` says so.
+/// `pulse` says so. An element test has increments, or random states, for steps, and neither time nor particles.
 Record simulate(const Case& definition, const RunRequest& request, const Pulse& pulse = {});
 
 /// Hash of all that decides what a run computes and what is kept of it: scene, probes and snapshots; 16
