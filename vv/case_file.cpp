@@ -1314,7 +1314,8 @@ void require_suited(const JsonPlace& place, const Case& read) {
     for (const RunRequest& run : read.runs) {
       const std::string missing = why_unsuited(name.text(), run);
       if (missing.empty()) continue;
-      name.refuse("a reference solution that describes the run; it needs " + missing,
+      name.refuse(std::string("a reference solution that describes the ") +
+                      (run.element ? "element test" : "scene") + "; it needs " + missing,
                   run.parameters.empty() ? "" : " for the run with " + name_of(run));
     }
   }
