@@ -421,8 +421,8 @@ Look reference_look(std::size_t number) {
   return look;
 }
 
-/// Whether two reference curves are one solution: their values reach equally far, to 1 %, and where both stand
-/// over the same places they are equal to as much.
+/// Whether two reference curves are one solution: their values reach equally far, to 1 %, and where both
+/// stand over the same places they are equal to as much.
 bool are_alike(const vv::Curve& a, const vv::Curve& b) {
   const double reach_a = extent_of(a.y).reach(), reach_b = extent_of(b.y).reach();
   const double close = 0.01 * std::max(reach_a, reach_b) + 1e-300;

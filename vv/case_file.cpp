@@ -690,8 +690,8 @@ std::string source_of(const std::string& pointer, const std::vector<SweepAxis>& 
   return "";
 }
 
-/// The first axis whose value makes the subject impossible even without the other axes; if none does alone, the
-/// last.
+/// The first axis whose value makes the subject impossible even without the other axes; if none does alone,
+/// the last.
 std::size_t culprit(const Subject& subject, const std::vector<SweepAxis>& sweep, const Choice& choice) {
   for (std::size_t axis = 0; axis < sweep.size(); ++axis) {
     Subject changed = subject;
@@ -1245,10 +1245,10 @@ void read_layout(const JsonPlace& place, const Case& read, FigureRequest& figure
 
 FigureRequest read_figure(const JsonPlace& place, const Case& read) {
   FigureRequest figure;
-  figure.kind = place["kind"].one_of(
-      is_element_case(read)
-          ? std::vector<std::string>{"bars", "curves"}
-          : std::vector<std::string>{"profiles", "convergence", "bars", "history", "curves", "fields"});
+  figure.kind =
+      place["kind"].one_of(is_element_case(read) ? std::vector<std::string>{"bars", "curves"}
+                                                 : std::vector<std::string>{"profiles", "convergence", "bars",
+                                                                            "history", "curves", "fields"});
   place.allow_only(figure_keys(figure.kind));
   figure.id = read_id(place["id"], read.figures);
   figure.caption = place["caption"].text();
@@ -1326,8 +1326,8 @@ Subject read_subject(const JsonPlace& place) {
   const JsonPlace scene = place["scene"], element = place["element"];
   if (scene.present() && element.present()) throw Refusal("", "either scene or element", "both");
   if (!scene.present() && !element.present()) scene.refuse("an object");
-  const Subject subject = element.present() ? Subject{element_pointer, element.value()}
-                                            : Subject{scene_pointer, scene.value()};
+  const Subject subject =
+      element.present() ? Subject{element_pointer, element.value()} : Subject{scene_pointer, scene.value()};
   RunRequest as_written;
   read_checked(subject, as_written);
   return subject;
@@ -1336,10 +1336,11 @@ Subject read_subject(const JsonPlace& place) {
 /// Reads `read.text` into the rest of `read`, top to bottom: each part refers only to those before it.
 void read_parts(Case& read) {
   const JsonPlace place(&read.text, "");
-  std::vector<std::string> keys = {"$schema",    "id",    "title", "figure_of_paper",
-                                   "description", "claims", "notes", "quick",
-                                   "repeat_on_other_threads", "scene", "element", "sweep",
-                                   "references", "gates", "figures"};
+  std::vector<std::string> keys = {"$schema",         "id",          "title",
+                                   "figure_of_paper", "description", "claims",
+                                   "notes",           "quick",       "repeat_on_other_threads",
+                                   "scene",           "element",     "sweep",
+                                   "references",      "gates",       "figures"};
   if (!place["element"].present()) keys.insert(keys.end(), {"probes", "snapshots"});
   place.allow_only(keys);
   optional_text(place["$schema"]);

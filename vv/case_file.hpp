@@ -131,8 +131,8 @@ struct FigureRequest {
 /// One run of a sweep: its parameters, the resolved scene or element test, and its own text (for hashing).
 struct RunRequest {
   std::vector<std::pair<std::string, Json>> parameters;  ///< swept JSON pointer and value, in sweep order
-  Json scene_text;                                       ///< the case's /scene or /element, the parameters put in
-  Scene scene;  ///< checked; without bodies for an element test
+  Json scene_text;  ///< the case's /scene or /element, the parameters put in
+  Scene scene;      ///< checked; without bodies for an element test
   std::shared_ptr<const reference::ManufacturedSolution> motion = nullptr;  ///< what drives the scene; may be null
   std::optional<ElementTest> element = std::nullopt;  ///< checked; stands in place of the scene
 };

@@ -96,9 +96,10 @@ class Abandoned : public std::runtime_error {
 };
 
 /// Runs one request of a case to its end and records it, probes included: each samples the first step, the
-/// step nearest to every multiple of its interval, and the last step. A snapshot whose moment does not come is
-/// left out. `cost.wall_seconds` covers the steps only. Throws SceneError, std::bad_alloc, and Abandoned when
-/// `pulse` says so. An element test has increments, or random states, for steps, and neither time nor particles.
+/// step nearest to every multiple of its interval, and the last step. A snapshot whose moment does not come
+/// is left out. `cost.wall_seconds` covers the steps only. Throws SceneError, std::bad_alloc, and Abandoned
+/// when `pulse` says so. An element test has increments, or random states, for steps, and neither time nor
+/// particles.
 Record simulate(const Case& definition, const RunRequest& request, const Pulse& pulse = {});
 
 /// Hash of all that decides what a run computes and what is kept of it: scene, probes and snapshots; 16
