@@ -432,8 +432,20 @@ Look reference_look(std::size_t number) {
   return look;
 }
 
+/// Whether two reference curves are one solution: their values reach equally far, to 1 %, and where both
+/// stand over the same places they are equal to as much.
+bool are_alike(const vv::Curve& a, const vv::Curve& b) {
+  const double reach_a = extent_of(a.y).reach(), reach_b = extent_of(b.y).reach();
+  const double close = 0.01 * std::max(reach_a, reach_b) + 1e-300;
+  if (std::abs(reach_a - reach_b) > close) return false;
+  if (a.x != b.x) return true;
+  for (std::size_t i = 0; i < a.y.size(); ++i)
+    if (std::abs(a.y[i] - b.y[i]) > close) return false;
+  return true;
+}
+
 /// The reference curves of a panel, one of each kind: runs of one panel share their exact solution, so the
-/// one that spans most stands for all; one that differs by more than 1 % in its values is another solution.
+/// one that spans most stands for all.
 std::vector<const vv::Curve*> reference_curves(const std::vector<Member>& members, const std::string& name,
                                                const std::string& source) {
   std::vector<const vv::Curve*> kept;
@@ -441,11 +453,8 @@ std::vector<const vv::Curve*> reference_curves(const std::vector<Member>& member
   for (const Member& member : members) {
     const vv::Curve* curve = curve_of(*member.run, name, source);
     if (!curve || curve->x.empty()) continue;
-    const double reach = extent_of(curve->y).reach();
-    const auto same = std::find_if(kept.begin(), kept.end(), [reach](const vv::Curve* other) {
-      const double o = extent_of(other->y).reach();
-      return std::abs(o - reach) <= 0.01 * std::max(o, reach) + 1e-300;
-    });
+    const auto same = std::find_if(kept.begin(), kept.end(),
+                                   [curve](const vv::Curve* other) { return are_alike(*curve, *other); });
     if (same == kept.end())
       kept.push_back(curve);
     else if (span(curve) > span(*same))

@@ -111,6 +111,13 @@ std::string slug_of(const RunRequest& request) {
 
 // ---- jobs ----
 
+/// Of an element test its increments or states, each of which costs about as much as a particle-step.
+double estimated_steps(const RunRequest& request) {
+  if (!request.element) return estimated_particle_steps(request.scene);
+  const ElementTest& test = *request.element;
+  return test.path == ElementPath::random_states ? test.states : test.increments;
+}
+
 /// One execution of one run.
 struct Job {
   const Case* definition;
@@ -126,8 +133,7 @@ struct Job {
         run(index),
         file(std::move(stored_in)),
         pool_size(threads),
-        estimate(estimated_particle_steps(of.runs[index].scene) *
-                 static_cast<double>(1 + of.metamorphoses.size())) {}
+        estimate(estimated_steps(of.runs[index]) * static_cast<double>(1 + of.metamorphoses.size())) {}
 
   const RunRequest& request() const { return definition->runs[run]; }
 

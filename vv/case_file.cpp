@@ -475,7 +475,57 @@ std::optional<DrivenMotion> driven_motion_of(
       .body_force = [solution](const PerAxis& at, double time) { return solution->body_force(at, time); }};
 }
 
-const std::string scene_pointer = "/scene";
+// ---- element test
+// -----------------------------------------------------------------------------------------------
+
+ElementPath read_path_type(const JsonPlace& place) {
+  return place.choice<ElementPath>({{"plane_strain_compression", ElementPath::plane_strain_compression},
+                                    {"plane_strain_extension", ElementPath::plane_strain_extension},
+                                    {"oedometric_compression", ElementPath::oedometric_compression},
+                                    {"oedometric_extension", ElementPath::oedometric_extension},
+                                    {"simple_shear", ElementPath::simple_shear},
+                                    {"isotropic_tension", ElementPath::isotropic_tension},
+                                    {"random_states", ElementPath::random_states}});
+}
+
+void read_path(const JsonPlace& place, ElementTest& test) {
+  test.path = read_path_type(place["type"]);
+  test.pressure = place["pressure"].quantity(QuantityKind::pressure);
+  if (test.path == ElementPath::random_states) {
+    place.allow_only({"type", "pressure", "states", "seed"});
+    test.states = place["states"].integer();
+    const int seed = place["seed"].integer();
+    if (seed < 0) place["seed"].refuse("a whole number, zero or above");
+    test.seed = static_cast<std::uint64_t>(seed);
+    return;
+  }
+  place.allow_only({"type", "pressure", "strain", "increments"});
+  test.strain = place["strain"].number();
+  test.increments = place["increments"].integer();
+}
+
+ElementTest read_element(const JsonPlace& place) {
+  place.allow_only({"material", "path", "precision"});
+  ElementTest test;
+  const Material material = read_material(place["material"]);
+  const auto* soil = std::get_if<MohrCoulomb>(&material);
+  if (!soil) place["material"]["law"].refuse("a law with element tests, mohr_coulomb");
+  test.material = *soil;
+  read_path(place["path"], test);
+  if (const JsonPlace precision = place["precision"]; precision.present()) {
+    test.precision =
+        precision.choice<Precision>({{"double", Precision::float64}, {"float", Precision::float32}});
+  }
+  return test;
+}
+
+const std::string scene_pointer = "/scene", element_pointer = "/element";
+
+/// What a case puts to the test as written: a scene or an element test, and which.
+struct Subject {
+  std::string pointer;  ///< `scene_pointer` or `element_pointer`
+  Json text;
+};
 
 /// Throws Refusal with a pointer below /scene for a scene that cannot start.
 void require_possible(const Scene& scene) {
@@ -494,8 +544,20 @@ void read_checked_scene(const JsonPlace& place, RunRequest& run) {
   run.scene.driven_motion = driven_motion_of(run.motion);
 }
 
-void read_checked_scene(const Json& scene_text, RunRequest& run) {
-  read_checked_scene(JsonPlace(&scene_text, scene_pointer), run);
+void read_checked_element(const JsonPlace& place, RunRequest& run) {
+  run.element = read_element(place);
+  try {
+    check(*run.element);
+  } catch (const SceneError& error) {
+    throw Refusal(element_pointer + error.place(), error.expected(), error.found());
+  }
+}
+
+/// Reads a scene or an element test that can start into the request of a run.
+void read_checked(const Subject& subject, RunRequest& run) {
+  const JsonPlace place(&subject.text, subject.pointer);
+  if (subject.pointer == element_pointer) return read_checked_element(place, run);
+  read_checked_scene(place, run);
 }
 
 // ---- sweep
@@ -512,26 +574,30 @@ bool at_or_below(const std::string& pointer, const std::string& parent) {
   return pointer.starts_with(parent) && (pointer.size() == parent.size() || pointer[parent.size()] == '/');
 }
 
-/// A JSON pointer to something in the scene as written, relative to the scene.
-Json::json_pointer below_scene(const std::string& parameter) {
-  return Json::json_pointer(parameter.substr(scene_pointer.size()));
+/// A JSON pointer to something in the subject as written, relative to the subject.
+Json::json_pointer below(const Subject& subject, const std::string& parameter) {
+  return Json::json_pointer(parameter.substr(subject.pointer.size()));
 }
 
-bool names_scene_value(const std::string& parameter, const Json& scene_text) {
-  if (!parameter.starts_with(scene_pointer + "/")) return false;
+bool names_value(const std::string& parameter, const Subject& subject) {
+  if (!parameter.starts_with(subject.pointer + "/")) return false;
   try {
-    return scene_text.contains(below_scene(parameter));
+    return subject.text.contains(below(subject, parameter));
   } catch (const Json::exception&) {  // not a JSON pointer
     return false;
   }
 }
 
-/// Refuses a `parameter` that the scene does not have or that one of the `taken` changes too. `found`
+/// Refuses a `parameter` that the subject does not have or that one of the `taken` changes too. `found`
 /// describes it.
 void require_own_value(const std::string& pointer, const std::string& parameter, const std::string& found,
-                       const Json& scene_text, const std::vector<std::string>& taken) {
-  if (!names_scene_value(parameter, scene_text)) {
-    throw Refusal(pointer, "a JSON pointer to a value the scene has, such as \"/scene/scheme\"", found);
+                       const Subject& subject, const std::vector<std::string>& taken) {
+  if (!names_value(parameter, subject)) {
+    const bool of_scene = subject.pointer == scene_pointer;
+    throw Refusal(pointer,
+                  of_scene ? "a JSON pointer to a value the scene has, such as \"/scene/scheme\""
+                           : "a JSON pointer to a value the element test has, such as \"/element/path\"",
+                  found);
   }
   for (const std::string& other : taken) {
     if (at_or_below(parameter, other) || at_or_below(other, parameter)) {
@@ -562,17 +628,17 @@ std::vector<Json> read_followers(const JsonPlace& place, std::size_t count) {
 }
 
 /// Reads an axis; `taken` are the parameters that are changed so far, to which its own are added.
-SweepAxis read_sweep_axis(const JsonPlace& place, const Json& scene_text, std::vector<std::string>& taken) {
+SweepAxis read_sweep_axis(const JsonPlace& place, const Subject& subject, std::vector<std::string>& taken) {
   place.allow_only({"parameter", "with", "values"});
   SweepAxis axis;
   axis.parameter = place["parameter"].text();
   require_own_value(place["parameter"].pointer(), axis.parameter, describe(place["parameter"].value()),
-                    scene_text, taken);
+                    subject, taken);
   taken.push_back(axis.parameter);
   axis.values = read_distinct_values(place["values"]);
   if (!place["with"].present()) return axis;
   for (const auto& [parameter, values] : place["with"].members()) {
-    require_own_value(values.pointer(), parameter, describe(Json(parameter)), scene_text, taken);
+    require_own_value(values.pointer(), parameter, describe(Json(parameter)), subject, taken);
     taken.push_back(parameter);
     axis.with.push_back({parameter, read_followers(values, axis.values.size())});
   }
@@ -580,13 +646,13 @@ SweepAxis read_sweep_axis(const JsonPlace& place, const Json& scene_text, std::v
   return axis;
 }
 
-std::vector<SweepAxis> read_sweep(const JsonPlace& place, const Json& scene_text) {
+std::vector<SweepAxis> read_sweep(const JsonPlace& place, const Subject& subject) {
   std::vector<SweepAxis> sweep;
   if (!place.present()) return sweep;
   double runs = 1.0;
   std::vector<std::string> taken;
   for (const JsonPlace& axis : place.some_elements()) {
-    sweep.push_back(read_sweep_axis(axis, scene_text, taken));
+    sweep.push_back(read_sweep_axis(axis, subject, taken));
     runs *= static_cast<double>(sweep.back().values.size());
     if (runs > most_runs) place.refuse("at most 100000 runs");
   }
@@ -603,11 +669,11 @@ std::string chosen_pointer(const Choice& choice, std::size_t axis) {
   return axis_pointer(axis) + "/values/" + std::to_string(choice[axis]);
 }
 
-/// Puts the value with index `chosen` of an axis into the scene, and what follows along.
-void put(const SweepAxis& axis, std::size_t chosen, Json& scene_text) {
-  scene_text.at(below_scene(axis.parameter)) = axis.values[chosen];
+/// Puts the value with index `chosen` of an axis into the subject, and what follows along.
+void put(const SweepAxis& axis, std::size_t chosen, Subject& subject) {
+  subject.text.at(below(subject, axis.parameter)) = axis.values[chosen];
   for (const Follower& follower : axis.with) {
-    scene_text.at(below_scene(follower.parameter)) = follower.values[chosen];
+    subject.text.at(below(subject, follower.parameter)) = follower.values[chosen];
   }
 }
 
@@ -625,15 +691,15 @@ std::string source_of(const std::string& pointer, const std::vector<SweepAxis>& 
   return "";
 }
 
-/// The first axis whose value makes the scene impossible even without the other axes; if none does alone, the
-/// last.
-std::size_t culprit(const Json& scene_text, const std::vector<SweepAxis>& sweep, const Choice& choice) {
+/// The first axis whose value makes the subject impossible even without the other axes; if none does alone,
+/// the last.
+std::size_t culprit(const Subject& subject, const std::vector<SweepAxis>& sweep, const Choice& choice) {
   for (std::size_t axis = 0; axis < sweep.size(); ++axis) {
-    Json changed = scene_text;
+    Subject changed = subject;
     put(sweep[axis], choice[axis], changed);
     try {
       RunRequest alone;
-      read_checked_scene(changed, alone);
+      read_checked(changed, alone);
     } catch (const Refusal&) {
       return axis;
     }
@@ -641,31 +707,32 @@ std::size_t culprit(const Json& scene_text, const std::vector<SweepAxis>& sweep,
   return sweep.size() - 1;
 }
 
-/// Says which swept value is to blame for what is wrong with the scene of a run.
-[[noreturn]] void refuse_run(const Refusal& refusal, const Json& scene_text,
+/// Says which swept value is to blame for what is wrong with the subject of a run.
+[[noreturn]] void refuse_run(const Refusal& refusal, const Subject& subject,
                              const std::vector<SweepAxis>& sweep, const Choice& choice) {
   for (std::size_t axis = 0; axis < sweep.size(); ++axis) {
     const std::string source = source_of(refusal.pointer(), sweep, choice, axis);
     if (!source.empty()) throw Refusal(source, refusal.expected(), refusal.found());
   }
-  const std::size_t axis = culprit(scene_text, sweep, choice);
+  const std::size_t axis = culprit(subject, sweep, choice);
   throw Refusal(chosen_pointer(choice, axis),
                 "a value with which " + refusal.pointer() + " is " + refusal.expected(),
                 describe(chosen_value(sweep, choice, axis)) + ", which makes it " + refusal.found());
 }
 
-RunRequest read_run(const Json& scene_text, const std::vector<SweepAxis>& sweep, const Choice& choice) {
+RunRequest read_run(const Subject& subject, const std::vector<SweepAxis>& sweep, const Choice& choice) {
   RunRequest run;
-  run.scene_text = scene_text;
+  Subject resolved = subject;
   for (std::size_t axis = 0; axis < sweep.size(); ++axis) {
     run.parameters.emplace_back(sweep[axis].parameter, chosen_value(sweep, choice, axis));
-    put(sweep[axis], choice[axis], run.scene_text);
+    put(sweep[axis], choice[axis], resolved);
   }
   try {
-    read_checked_scene(run.scene_text, run);
+    read_checked(resolved, run);
   } catch (const Refusal& refusal) {
-    refuse_run(refusal, scene_text, sweep, choice);
+    refuse_run(refusal, subject, sweep, choice);
   }
+  run.scene_text = std::move(resolved.text);
   return run;
 }
 
@@ -678,11 +745,11 @@ bool advance(Choice& choice, const std::vector<SweepAxis>& sweep) {
   return false;
 }
 
-std::vector<RunRequest> expand(const Json& scene_text, const std::vector<SweepAxis>& sweep) {
+std::vector<RunRequest> expand(const Subject& subject, const std::vector<SweepAxis>& sweep) {
   std::vector<RunRequest> runs;
   Choice choice(sweep.size(), 0);
   do {
-    runs.push_back(read_run(scene_text, sweep, choice));
+    runs.push_back(read_run(subject, sweep, choice));
   } while (advance(choice, sweep));
   return runs;
 }
@@ -735,6 +802,13 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
+bool is_element_case(const Case& read) { return read.text.contains("element"); }
+
+/// Whether a metric tells of every run, whatever it puts to the test.
+bool tells_of_any_run(const std::string& metric) {
+  return contains({"completed", "steps", "non_finite_values", "bits_differ"}, metric);
+}
+
 std::string read_metric(const JsonPlace& place, const Case& read) {
   std::vector<std::string> names;
   for (const Metric& metric : metric_catalogue()) names.push_back(metric.name);
@@ -749,6 +823,10 @@ std::string read_metric(const JsonPlace& place, const Case& read) {
   if (name.starts_with(metamorphic_prefix) &&
       !contains(read.metamorphoses, name.substr(metamorphic_prefix.size()))) {
     place.refuse("a metric that the case measures", ", which needs that name among metamorphoses");
+  }
+  if (!tells_of_any_run(name) && name.starts_with("element.") != is_element_case(read)) {
+    place.refuse(is_element_case(read) ? "a metric of an element test" : "a metric of a scene",
+                 ", which the case does not measure");
   }
   if (name == "bits_differ" && !read.repeat_on_other_threads) {
     place.refuse("a metric that the case measures", ", which needs repeat_on_other_threads to be true");
@@ -1058,12 +1136,12 @@ std::vector<Json> selected_values(const SweepAxis& axis, const std::vector<Selec
 
 /// Observed orders are taken in the cell size, so it must fall from each level to the next.
 void require_refinement(const JsonPlace& place, const SweepAxis& axis, const std::vector<Json>& values,
-                        Json scene_text) {
+                        Subject subject) {
   double coarser = std::numeric_limits<double>::infinity();
   for (const Json& value : values) {
     const auto chosen = std::find(axis.values.begin(), axis.values.end(), value) - axis.values.begin();
-    put(axis, static_cast<std::size_t>(chosen), scene_text);
-    const double cell_size = read_scene(JsonPlace(&scene_text, scene_pointer)).cell_size;
+    put(axis, static_cast<std::size_t>(chosen), subject);
+    const double cell_size = read_scene(JsonPlace(&subject.text, subject.pointer)).cell_size;
     if (!(cell_size < coarser)) {
       place.refuse("a parameter that makes the cell size smaller from each value to the next");
     }
@@ -1084,7 +1162,10 @@ void read_across(const JsonPlace& place, const Case& read, Gate& gate) {
     place.refuse("a parameter with at least " + std::to_string(fewest) + " selected values",
                  ", which has " + std::to_string(values.size()));
   }
-  if (gate.statistic == Statistic::last_order) require_refinement(place, axis, values, read.text.at("scene"));
+  if (gate.statistic == Statistic::last_order) {
+    if (is_element_case(read)) place.refuse("a parameter of a scene, which alone has cells to refine");
+    require_refinement(place, axis, values, {scene_pointer, read.text.at("scene")});
+  }
   gate.across = axis.parameter;
 }
 
@@ -1123,8 +1204,12 @@ std::vector<std::string> figure_keys(const std::string& kind) {
   return keys;
 }
 
-/// The curves of a verdict that can be drawn by their name: pressure under a footing over its settlement.
-const std::vector<std::string> curve_catalogue = {"pressure"};
+/// The curves of a verdict that can be drawn by their name: of a scene the pressure under a footing over its
+/// settlement, of an element test its stresses and volume over the strain.
+std::vector<std::string> curve_catalogue(const Case& read) {
+  if (!is_element_case(read)) return {"pressure"};
+  return {"stress_xx", "stress_yy", "stress_zz", "stress_xy", "volumetric_strain"};
+}
 
 /// The name of a scalar to draw the snapshots by, which every run must have.
 std::string read_field(const JsonPlace& place, const Case& read) {
@@ -1165,7 +1250,10 @@ void read_layout(const JsonPlace& place, const Case& read, FigureRequest& figure
 
 FigureRequest read_figure(const JsonPlace& place, const Case& read) {
   FigureRequest figure;
-  figure.kind = place["kind"].one_of({"profiles", "convergence", "bars", "history", "curves", "fields"});
+  figure.kind =
+      place["kind"].one_of(is_element_case(read) ? std::vector<std::string>{"bars", "curves"}
+                                                 : std::vector<std::string>{"profiles", "convergence", "bars",
+                                                                            "history", "curves", "fields"});
   place.allow_only(figure_keys(figure.kind));
   figure.id = read_id(place["id"], read.figures);
   figure.caption = place["caption"].text();
@@ -1173,7 +1261,7 @@ FigureRequest read_figure(const JsonPlace& place, const Case& read) {
   if (figure.kind == "profiles") {
     figure.quantity = place["quantity"].one_of({"stress", "displacement", "stress_error"});
   } else if (figure.kind == "curves") {
-    figure.quantity = place["quantity"].one_of(curve_catalogue);
+    figure.quantity = place["quantity"].one_of(curve_catalogue(read));
   } else if (figure.kind == "history") {
     figure.quantity = read_probe_name(place["quantity"], read.probes);
   } else if (figure.kind == "fields") {
@@ -1229,9 +1317,10 @@ void read_description(const JsonPlace& place, Case& read) {
 void require_suited(const JsonPlace& place, const Case& read) {
   for (const JsonPlace& name : place.elements()) {
     for (const RunRequest& run : read.runs) {
-      const std::string missing = why_unsuited(name.text(), run.scene);
+      const std::string missing = why_unsuited(name.text(), run);
       if (missing.empty()) continue;
-      name.refuse("a reference solution that describes the scene; it needs " + missing,
+      name.refuse(std::string("a reference solution that describes the ") +
+                      (run.element ? "element test" : "scene") + "; it needs " + missing,
                   run.parameters.empty() ? "" : " for the run with " + name_of(run));
     }
   }
@@ -1247,26 +1336,41 @@ std::vector<std::string> read_metamorphoses(const JsonPlace& place, const Case& 
     for (const RunRequest& run : read.runs) {
       const std::string reason = why_not_describable(name.text(), run.scene);
       if (reason.empty()) continue;
-      name.refuse("a metamorphosis that the scene has", ", but " + reason +
-                                                            (run.parameters.empty() ? "" : " in the run with " + name_of(run)));
+      name.refuse("a metamorphosis that the scene has",
+                  ", but " + reason + (run.parameters.empty() ? "" : " in the run with " + name_of(run)));
     }
   }
   return names;
 }
 
+/// The scene or the element test of a case, which can start as written.
+Subject read_subject(const JsonPlace& place) {
+  const JsonPlace scene = place["scene"], element = place["element"];
+  if (scene.present() && element.present()) throw Refusal("", "either scene or element", "both");
+  if (!scene.present() && !element.present()) scene.refuse("an object");
+  const Subject subject =
+      element.present() ? Subject{element_pointer, element.value()} : Subject{scene_pointer, scene.value()};
+  RunRequest as_written;
+  read_checked(subject, as_written);
+  return subject;
+}
+
 /// Reads `read.text` into the rest of `read`, top to bottom: each part refers only to those before it.
 void read_parts(Case& read) {
   const JsonPlace place(&read.text, "");
-  place.allow_only({"$schema", "id", "title", "figure_of_paper", "description", "claims", "notes", "quick",
-                    "repeat_on_other_threads", "metamorphoses", "scene", "sweep", "references", "probes", "snapshots", "gates",
-                    "figures"});
+  std::vector<std::string> keys = {"$schema",         "id",          "title",
+                                   "figure_of_paper", "description", "claims",
+                                   "notes",           "quick",       "repeat_on_other_threads",
+                                   "metamorphoses",   "scene",       "element",
+                                   "sweep",           "references",  "gates",
+                                   "figures"};
+  if (!place["element"].present()) keys.insert(keys.end(), {"probes", "snapshots"});
+  place.allow_only(keys);
   optional_text(place["$schema"]);
   read_description(place, read);
-  RunRequest as_written;
-  read_checked_scene(place["scene"], as_written);
-  const Json& scene_text = place["scene"].value();
-  read.sweep = read_sweep(place["sweep"], scene_text);
-  read.runs = expand(scene_text, read.sweep);
+  const Subject subject = read_subject(place);
+  read.sweep = read_sweep(place["sweep"], subject);
+  read.runs = expand(subject, read.sweep);
   require_suited(place["references"], read);
   read.metamorphoses = read_metamorphoses(place["metamorphoses"], read);
   if (const JsonPlace probes = place["probes"]; probes.present()) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "solver/scene.hpp"
+#include "vv/element_test.hpp"
 
 namespace mpm::reference {
 class ManufacturedSolution;
@@ -72,12 +73,12 @@ struct Claim {
 
 /// Another place of the scene that changes together with a swept parameter.
 struct Follower {
-  std::string parameter;     ///< JSON pointer into the case, below /scene
+  std::string parameter;     ///< JSON pointer into the case, below /scene or /element
   std::vector<Json> values;  ///< one for each value of the axis
 };
 
 struct SweepAxis {
-  std::string parameter;  ///< JSON pointer into the case, below /scene; it alone names the runs
+  std::string parameter;  ///< JSON pointer into the case, below /scene or /element; it alone names the runs
   std::vector<Json> values;
   std::vector<Follower> with = {};
 };
@@ -127,12 +128,13 @@ struct FigureRequest {
   std::vector<Selector> where;
 };
 
-/// One run of a sweep: its parameters, the resolved scene, and the scene's own text (for hashing).
+/// One run of a sweep: its parameters, the resolved scene or element test, and its own text (for hashing).
 struct RunRequest {
   std::vector<std::pair<std::string, Json>> parameters;  ///< swept JSON pointer and value, in sweep order
-  Json scene_text;                                       ///< the case's /scene with the parameters put in
-  Scene scene;                                           ///< checked
+  Json scene_text;  ///< the case's /scene or /element, the parameters put in
+  Scene scene;      ///< checked; without bodies for an element test
   std::shared_ptr<const reference::ManufacturedSolution> motion = nullptr;  ///< what drives the scene; may be null
+  std::optional<ElementTest> element = std::nullopt;  ///< checked; stands in place of the scene
 };
 
 /// One case file, checked: every run it asks for can start.

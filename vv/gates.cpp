@@ -110,7 +110,7 @@ double statistic_of(Statistic statistic, const std::vector<double>& values,
       double worst = values[1] / values[0];
       for (std::size_t k = 1; k < last; ++k) {
         const double ratio = values[k + 1] / values[k];
-        if (!(ratio <= worst)) worst = ratio;  // a NaN must win, not vanish in a comparison
+        if (!(ratio <= worst) && !std::isnan(worst)) worst = ratio;  // a NaN must win and stay
       }
       return worst;
     }

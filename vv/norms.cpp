@@ -10,7 +10,7 @@ namespace mpm::vv {
 namespace {
 
 const std::vector<NormFamily>& families() {
-  static const std::vector<NormFamily> all{column_norms(), footing_norms(), motion_norms(),
+  static const std::vector<NormFamily> all{column_norms(), footing_norms(), motion_norms(), element_norms(),
                                            conservation_norms()};
   return all;
 }
@@ -24,6 +24,8 @@ double count_non_finite(const Record& record) {
   const Profile& p = record.profile;
   for (const Values* field : {&p.position, &p.displacement, &p.stress, &p.volume, &p.half_size}) add(*field);
   for (const History& history : record.histories) add(history.value);
+  for (const ElementCurve& path : record.paths) add(path.value);
+  for (const auto& [name, value] : record.measured) add({value});
   return count;
 }
 
@@ -57,6 +59,21 @@ std::vector<Metric> general_metrics() {
   all.push_back({"steps", "-", "", "time steps done"});
   all.push_back({"particle_steps", "-", "", "time steps times particles: the noise-free cost"});
   return all;
+}
+
+/// What is measured of every run of a scene, whatever it is about.
+void judge_scene(Judging& judging) {
+  const Record& record = judging.record;
+  judging.set("cell_crossings", static_cast<double>(record.cell_crossings));
+  judging.set("particle_steps", static_cast<double>(record.cost.particle_steps));
+  if (record.failure.empty()) judging.set("mass_change", std::abs(record.relative_mass_change));
+  for (const History& history : record.histories) {
+    judging.result.curves.push_back({history.id, "run", history.time, history.value, "time"});
+  }
+  if (!record.completed()) return;
+  judging.set("largest_compression", largest_compression(record.profile));
+  judging.set("unbalanced_force_ratio", record.unbalanced_force_ratio);
+  judging.set("kinetic_energy_ratio", record.kinetic_energy_ratio);
 }
 
 std::vector<Metric> make_catalogue() {
@@ -141,22 +158,19 @@ std::string why_unsuited(const std::string& reference, const Scene& scene) {
   return "to be known";
 }
 
+std::string why_unsuited(const std::string& reference, const RunRequest& request) {
+  if (!request.element) return why_unsuited(reference, request.scene);
+  return reference == "closed_form" ? "" : "a scene";
+}
+
 Judgement judge(const Case& definition, const RunRequest& request, const Record& record) {
   Judging judging{definition, request, record, {}};
   judging.set("completed", record.completed() ? 1 : 0);
-  judging.set("cell_crossings", static_cast<double>(record.cell_crossings));
   judging.set("steps", static_cast<double>(record.cost.steps));
-  judging.set("particle_steps", static_cast<double>(record.cost.particle_steps));
   judging.set("non_finite_values", count_non_finite(record));
-  if (record.failure.empty()) judging.set("mass_change", std::abs(record.relative_mass_change));
-  for (const History& history : record.histories) {
-    judging.result.curves.push_back({history.id, "run", history.time, history.value, "time"});
-  }
+  if (!request.element) judge_scene(judging);
   for (const auto& [name, value] : record.measured) judging.set(name, value);
   if (!record.completed()) return judging.result;
-  judging.set("largest_compression", largest_compression(record.profile));
-  judging.set("unbalanced_force_ratio", record.unbalanced_force_ratio);
-  judging.set("kinetic_energy_ratio", record.kinetic_energy_ratio);
   for (const NormFamily& family : families()) family.judge(judging);
   return judging.result;
 }

@@ -19,11 +19,14 @@ struct Metric {
 /// Every metric there is, in the order a report lists them.
 const std::vector<Metric>& metric_catalogue();
 
-/// Reference solutions a case may ask for: equilibrium, hencky, zhang.
+/// Reference solutions a case may ask for: equilibrium, hencky, zhang; of element tests closed_form.
 const std::vector<std::string>& reference_catalogue();
 
 /// What a reference solution needs that a scene does not have, for a person; empty if it describes the scene.
 std::string why_unsuited(const std::string& reference, const Scene& scene);
+
+/// The same of a run, which may be an element test.
+std::string why_unsuited(const std::string& reference, const RunRequest& request);
 
 /// What the norms say of a record.
 struct Judgement {

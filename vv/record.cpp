@@ -122,6 +122,37 @@ Profile profile_from_json(const Json& json) {
   return profile;
 }
 
+Json paths_to_json(const std::vector<ElementCurve>& paths) {
+  Json json = Json::array();
+  for (const ElementCurve& path : paths)
+    json.push_back({{"id", path.id}, {"strain", numbers(path.strain)}, {"value", numbers(path.value)}});
+  return json;
+}
+
+std::vector<ElementCurve> paths_from_json(const Json& json) {
+  std::vector<ElementCurve> paths;
+  for (const Json& entry : json) {
+    paths.push_back({.id = entry.at("id").get<std::string>(),
+                     .strain = numbers_from(entry.at("strain")),
+                     .value = numbers_from(entry.at("value"))});
+    if (paths.back().strain.size() != paths.back().value.size())
+      throw std::runtime_error("path of unequal lengths");
+  }
+  return paths;
+}
+
+Json measured_to_json(const std::map<std::string, double>& measured) {
+  Json json = Json::object();
+  for (const auto& [name, value] : measured) json[name] = number(value);
+  return json;
+}
+
+std::map<std::string, double> measured_from_json(const Json& json) {
+  std::map<std::string, double> measured;
+  for (const auto& [name, value] : json.items()) measured[name] = number_from(value);
+  return measured;
+}
+
 Json outcome_to_json(const Outcome& outcome) {
   return {{"ending", name_of(outcome.ending)},
           {"step", outcome.step},
@@ -478,6 +509,31 @@ Json essence_of(const HistoryProbe& probe, const Scene& scene) {
   return json;
 }
 
+// ---- element tests ----
+
+std::string digest_of(const ElementRun& run) {
+  Fnv1a hash;
+  for (const ElementCurve& curve : run.curves) hash.add(curve.value);
+  for (const auto& [name, value] : run.measured) hash.add(std::vector<double>{value});
+  return hash.digits();
+}
+
+Record record_element_test(const ElementTest& test, const Pulse& pulse) {
+  const auto began = std::chrono::steady_clock::now();
+  ElementRun run = run_element_test(test);
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - began;
+  const std::int64_t steps = test.path == ElementPath::random_states ? test.states : test.increments;
+  if (pulse && !pulse(steps)) throw Abandoned();
+  Record record;
+  record.outcome.ending = Ending::reached_time;
+  record.outcome.step = steps;
+  record.digest = digest_of(run);
+  record.paths = std::move(run.curves);
+  record.measured = std::move(run.measured);
+  record.cost = {.wall_seconds = wall.count(), .steps = steps, .particle_steps = steps};
+  return record;
+}
+
 // ---- files ----
 
 [[noreturn]] void fail(const std::filesystem::path& path, const char* what) {
@@ -545,6 +601,17 @@ double difference_to(const Scene& scene, const std::string& metamorphosis, const
   return largest_difference(end, mapped_back(scene, other.particles(), other.time(), metamorphosis));
 }
 
+Record record_scene(const Case& definition, const RunRequest& request, const Pulse& pulse) {
+  Recorder recorder(definition, request, pulse);
+  Record record = recorder.run();
+  for (const std::string& metamorphosis : definition.metamorphoses) {
+    if (!record.completed()) break;  // a state without an end has no other description of it
+    const double difference = difference_to(request.scene, metamorphosis, recorder.particles(), pulse);
+    if (std::isfinite(difference)) record.measured[metamorphic_prefix + metamorphosis] = difference;
+  }
+  return record;
+}
+
 }  // namespace
 
 std::string ending_of(const Record& record) {
@@ -580,8 +647,9 @@ Json to_json(const Record& record) {
             {"particle_steps", record.cost.particle_steps}}},
           {"profile", profile_to_json(record.profile)},
           {"histories", histories_to_json(record.histories)},
-          {"measured", record.measured},
-          {"snapshots", snapshots_to_json(record.snapshots)}};
+          {"snapshots", snapshots_to_json(record.snapshots)},
+          {"paths", paths_to_json(record.paths)},
+          {"measured", measured_to_json(record.measured)}};
 }
 
 Record record_from_json(const Json& json) {
@@ -608,19 +676,15 @@ Record record_from_json(const Json& json) {
                  .particle_steps = cost.at("particle_steps").get<std::int64_t>()};
   record.profile = profile_from_json(json.at("profile"));
   record.histories = histories_from_json(json.at("histories"));
-  record.measured = json.at("measured").get<std::map<std::string, double>>();
   record.snapshots = snapshots_from_json(json.at("snapshots"));
+  record.paths = paths_from_json(json.at("paths"));
+  record.measured = measured_from_json(json.at("measured"));
   return record;
 }
 
 Record simulate(const Case& definition, const RunRequest& request, const Pulse& pulse) {
-  Recorder recorder(definition, request, pulse);
-  Record record = recorder.run();
-  for (const std::string& metamorphosis : definition.metamorphoses) {
-    if (!record.completed()) break;  // a state without an end has no other description of it
-    const double difference = difference_to(request.scene, metamorphosis, recorder.particles(), pulse);
-    if (std::isfinite(difference)) record.measured[metamorphic_prefix + metamorphosis] = difference;
-  }
+  Record record = request.element ? record_element_test(*request.element, pulse)
+                                  : record_scene(definition, request, pulse);
   record.case_id = definition.id;
   record.input_hash = input_hash(definition, request);
   record.program_hash = program_hash();
@@ -629,7 +693,9 @@ Record simulate(const Case& definition, const RunRequest& request, const Pulse& 
 }
 
 std::string input_hash(const Case& definition, const RunRequest& request) {
-  Json input = {{"schema", record_schema}, {"scene", request.scene_text}, {"probes", Json::array()}};
+  Json input = {{"schema", record_schema},
+                {request.element ? "element" : "scene", request.scene_text},
+                {"probes", Json::array()}};
   for (const HistoryProbe& probe : definition.probes)
     input["probes"].push_back(essence_of(probe, request.scene));
   for (const SnapshotRequest& snapshot : definition.snapshots) {

@@ -67,8 +67,11 @@ struct Record {
   std::string repeat_digest;  ///< the same of the repeat on another number of threads; empty without one
   Profile profile;
   std::vector<History> histories;
-  std::map<std::string, double> measured;  ///< metrics that need more than one state, by name; finite ones only
+  std::map<std::string, double>
+      measured;  ///< metrics that the record's states alone cannot tell, by name; of other descriptions of a
+                 ///< scene, and of an element test what only the law itself knows
   std::vector<Snapshot> snapshots;  ///< in the order they were taken
+  std::vector<ElementCurve> paths;  ///< of an element test, over the imposed strain
   Cost cost;
 
   /// The run ended where it was meant to: its final state can be judged.
@@ -95,9 +98,10 @@ class Abandoned : public std::runtime_error {
 };
 
 /// Runs one request of a case to its end and records it, probes included: each samples the first step, the
-/// step nearest to every multiple of its interval, and the last step. A snapshot whose moment does not come is
-/// left out. `cost.wall_seconds` covers the steps only. Throws SceneError, std::bad_alloc, and Abandoned when
-/// `pulse` says so.
+/// step nearest to every multiple of its interval, and the last step. A snapshot whose moment does not come
+/// is left out. `cost.wall_seconds` covers the steps only. Throws SceneError, std::bad_alloc, and Abandoned
+/// when `pulse` says so. An element test has increments, or random states, for steps, and neither time nor
+/// particles.
 Record simulate(const Case& definition, const RunRequest& request, const Pulse& pulse = {});
 
 /// Hash of all that decides what a run computes and what is kept of it: scene, probes and snapshots; 16
