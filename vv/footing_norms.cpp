@@ -2,7 +2,7 @@
 #include <cmath>
 #include <map>
 #include <mutex>
-#include <numbers>
+#include <numeric>
 #include <optional>
 #include <tuple>
 
@@ -148,8 +148,10 @@ void judge_by_limit_load(Judging& judging, const Footing& footing, const LoadCur
   judging.set("limit_analysis.pressure", mean);
   judging.set("limit_analysis.overshoot", mean / exact - 1);
   judging.set("limit_analysis.shortfall", 1 - mean / exact);
-  judging.set("limit_analysis.peak_overshoot",
-              *std::max_element(curve.pressure.begin(), curve.pressure.end()) / exact - 1);
+  judging.set(
+      "limit_analysis.peak_overshoot",
+      std::accumulate(curve.pressure.begin(), curve.pressure.end(), curve.pressure.front(), larger) / exact -
+          1);
   judging.set("limit_analysis.spread", (*most - *least) / mean);
   judging.result.curves.push_back(
       {"pressure", "limit_analysis", {0.0, curve.settlement.back()}, {exact, exact}, "settlement"});

@@ -122,11 +122,11 @@ void judge_by_free_fall(Judging& judging, const Snapshot& end) {
     for (std::size_t a = 0; a < axes; ++a) {
       const double exact = scene.bodies.front().velocity[a] * t +
                            scene.gravity.acceleration[a] * scene.gravity.level * t * (t + dt) / 2;
-      error = std::max(error, std::abs(fields.displacement[p * axes + a] - exact));
-      largest = std::max(largest, std::abs(exact));
+      error = larger(error, std::abs(fields.displacement[p * axes + a] - exact));
+      largest = larger(largest, std::abs(exact));
     }
   }
-  for (const double component : fields.stress) stress = std::max(stress, std::abs(component));
+  for (const double component : fields.stress) stress = larger(stress, std::abs(component));
   judging.set("free_fall.displacement", error / largest);
   const double modulus =
       std::visit([](const auto& law) { return law.youngs_modulus; }, scene.bodies.front().material);
@@ -145,8 +145,8 @@ void judge_by_rotation(Judging& judging, const Snapshot& end) {
     const SymmetricTensor<2, double> exact =
         rotated(SymmetricTensor<2, double>{start.xx, start.yy, start.zz, start.xy}, angle);
     for (std::size_t c = 0; c < exact.size(); ++c) {
-      error = std::max(error, std::abs(fields.stress[p * exact.size() + c] - exact[c]));
-      largest = std::max(largest, std::abs(exact[c]));
+      error = larger(error, std::abs(fields.stress[p * exact.size() + c] - exact[c]));
+      largest = larger(largest, std::abs(exact[c]));
     }
   }
   judging.set("rotation.stress", error / largest);
