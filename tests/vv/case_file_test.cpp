@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -9,6 +10,9 @@
 
 #include "tests/support/case_texts.hpp"
 #include "vv/case_schema.hpp"
+#include "vv/json_reader.hpp"
+#include "vv/metamorphic.hpp"
+#include "vv/norms.hpp"
 #include "vv/quantity.hpp"
 
 namespace mpm::vv {
@@ -250,6 +254,19 @@ TEST(CaseSchema, knows_the_units_the_reader_knows) {
       }
     }
   }
+}
+
+TEST(CaseSchema, names_the_references_and_metamorphoses_the_reader_knows) {
+  const Json schema = Json::parse(case_schema());
+  const auto sorted = [](std::vector<std::string> names) {
+    std::sort(names.begin(), names.end());
+    return names;
+  };
+  const Json &references = schema["definitions"]["references"]["items"]["enum"],
+             &metamorphoses = schema["properties"]["metamorphoses"]["items"]["enum"];
+  EXPECT_EQ(sorted(references.get<std::vector<std::string>>()), sorted(reference_catalogue()));
+  EXPECT_EQ(sorted(metamorphoses.get<std::vector<std::string>>()),
+            sorted(names_of(metamorphosis_catalogue())));
 }
 
 TEST(CaseSchema, describes_every_key) {

@@ -429,7 +429,21 @@ const std::vector<Malformed>& malformed_footings() {
        "/scene/rigid_bodies/0/speed", "one of the keys name, lower, upper, constrains, velocity", "\"speed\"",
        Schema::refuses},
 
+      {R"([{"op": "add", "path": "/scene/rigid_bodies/0/velocty", "value": ["0 m/s", "1 m/s"]}])",
+       "/scene/rigid_bodies/0/velocty", "one of the keys name, lower",
+       "\"velocty\" (did you mean \"velocity\"?)", Schema::refuses},
+      {R"([{"op": "add", "path": "/scene/rigid_body", "value": []}])", "/scene/rigid_body",
+       "one of the keys dimension", "\"rigid_body\" (did you mean \"rigid_bodies\"?)", Schema::refuses},
+
       // Surface loads.
+      {R"([{"op": "add", "path": "/scene/surface_load", "value": []}])", "/scene/surface_load",
+       "one of the keys dimension", "\"surface_load\" (did you mean \"surface_loads\"?)", Schema::refuses},
+      {R"([{"op": "add", "path": "/scene/surface_loads/0/tracton", "value": ["0 Pa", "1 Pa"]}])",
+       "/scene/surface_loads/0/tracton", "one of the keys body, edge, traction, ramp, from, to",
+       "\"tracton\" (did you mean \"traction\"?)", Schema::refuses},
+      {R"([{"op": "replace", "path": "/scene/surface_loads/0/edge", "value": "y_uper"}])",
+       "/scene/surface_loads/0/edge", "one of x_lower, x_upper, y_lower, y_upper",
+       "\"y_uper\" (did you mean \"y_upper\"?)", Schema::refuses},
       {R"([{"op": "replace", "path": "/scene/surface_loads/0/body", "value": "lover"}])",
        "/scene/surface_loads/0/body", "one of lower, plate", "\"lover\" (did you mean \"lower\"?)",
        Schema::cannot_tell},
@@ -572,6 +586,11 @@ const std::vector<Malformed>& malformed_waves() {
        Schema::cannot_tell},
 
       // Driven motions.
+      {R"([{"op": "add", "path": "/scene/drive_motion", "value": {}}])", "/scene/drive_motion",
+       "one of the keys dimension", "\"drive_motion\" (did you mean \"driven_motion\"?)", Schema::refuses},
+      {R"([{"op": "add", "path": "/scene/driven_motion/amplitud", "value": "1 cm"}])",
+       "/scene/driven_motion/amplitud", "one of the keys solution, amplitude, length",
+       "\"amplitud\" (did you mean \"amplitude\"?)", Schema::refuses},
       {R"([{"op": "remove", "path": "/scene/driven_motion/solution"}])", "/scene/driven_motion/solution",
        "one of standing_wave, axis_aligned", "nothing: the key is missing", Schema::refuses},
       {R"([{"op": "replace", "path": "/scene/driven_motion/solution", "value": "standing_waves"}])",

@@ -228,5 +228,14 @@ TEST(CaseFile, reads_every_driven_motion_with_its_parameters) {
   EXPECT_TRUE(parsed(bar).runs.front().motion);
 }
 
+TEST(CaseFile, turns_a_vortex_either_way) {
+  const auto moved = [](const char* amplitude) {
+    const Json vortex = {{"solution", "generalised_vortex"}, {"amplitude", amplitude}};
+    return parsed(driven_square(vortex)).runs.front().motion->displacement({1.0, 0.0}, 0.5)[1];
+  };
+  EXPECT_GT(moved("30 deg"), 0.1);
+  EXPECT_EQ(moved("-30 deg"), -moved("30 deg"));
+}
+
 }  // namespace
 }  // namespace mpm::vv
