@@ -154,6 +154,10 @@ std::string listed(const std::vector<std::string>& names) {
   return text;
 }
 
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
 std::string suggestion(const std::string& word, const std::vector<std::string>& names) {
   constexpr std::size_t longest_compared = 60;
   if (word.size() > longest_compared) return "";
@@ -184,6 +188,8 @@ bool JsonPlace::flag() const {
   return value_->get<bool>();
 }
 
+bool JsonPlace::flag_or(bool otherwise) const { return present() ? flag() : otherwise; }
+
 double JsonPlace::number() const {
   if (!present() || !value_->is_number()) refuse("a number");
   return value_->get<double>();
@@ -212,6 +218,10 @@ double JsonPlace::quantity(QuantityKind kind) const {
   }
 }
 
+double JsonPlace::quantity_or(QuantityKind kind, double otherwise) const {
+  return present() ? quantity(kind) : otherwise;
+}
+
 std::string JsonPlace::text() const {
   if (!present() || !value_->is_string() || value_->get_ref<const std::string&>().empty()) {
     refuse("a text that is not empty");
@@ -230,11 +240,17 @@ std::string JsonPlace::identifier() const {
   return name;
 }
 
+std::string JsonPlace::own_identifier(const std::vector<std::string>& taken) const {
+  const std::string id = identifier();
+  if (contains(taken, id)) refuse("an id of its own", ", which an earlier entry has");
+  return id;
+}
+
 std::string JsonPlace::one_of(const std::vector<std::string>& names) const {
   const std::string expected = (names.size() > 1 ? "one of " : "") + listed(names);
   if (!present() || !value_->is_string()) refuse(expected);
   const std::string& name = value_->get_ref<const std::string&>();
-  if (std::find(names.begin(), names.end(), name) == names.end()) refuse(expected, suggestion(name, names));
+  if (!contains(names, name)) refuse(expected, suggestion(name, names));
   return name;
 }
 
@@ -261,7 +277,7 @@ std::vector<std::pair<std::string, JsonPlace>> JsonPlace::members() const {
 
 void JsonPlace::allow_only(const std::vector<std::string>& keys) const {
   for (const auto& [key, place] : members()) {
-    if (std::find(keys.begin(), keys.end(), key) == keys.end()) {
+    if (!contains(keys, key)) {
       throw Refusal(place.pointer(), "one of the keys " + listed(keys),
                     describe(Json(key)) + suggestion(key, keys));
     }

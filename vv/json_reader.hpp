@@ -36,6 +36,24 @@ std::string describe(const nlohmann::ordered_json& value);
 /// `a, b, c`, for messages.
 std::string listed(const std::vector<std::string>& names);
 
+bool contains(const std::vector<std::string>& names, const std::string& name);
+
+/// The names of bodies, metrics or whatever else has one.
+template <class Named>
+std::vector<std::string> names_of(const std::vector<Named>& all) {
+  std::vector<std::string> names;
+  for (const Named& each : all) names.push_back(each.name);
+  return names;
+}
+
+/// The ids of probes, gates or whatever else has one.
+template <class Identified>
+std::vector<std::string> ids_of(const std::vector<Identified>& all) {
+  std::vector<std::string> ids;
+  for (const Identified& each : all) ids.push_back(each.id);
+  return ids;
+}
+
 /// ` (did you mean "b"?)` with the name nearest to `word`, or nothing when none is near.
 std::string suggestion(const std::string& word, const std::vector<std::string>& names);
 
@@ -63,11 +81,14 @@ class JsonPlace {
   [[noreturn]] void refuse(const std::string& expected, const std::string& remark = "") const;
 
   bool flag() const;
+  bool flag_or(bool otherwise) const;  ///< `otherwise` if absent
   double number() const;
-  int integer() const;                       ///< within the range of int
-  double quantity(QuantityKind kind) const;  ///< in SI units
-  std::string text() const;                  ///< not empty
-  std::string identifier() const;            ///< a letter, then letters, digits and underscores
+  int integer() const;                                            ///< within the range of int
+  double quantity(QuantityKind kind) const;                       ///< in SI units
+  double quantity_or(QuantityKind kind, double otherwise) const;  ///< `otherwise` if absent
+  std::string text() const;                                       ///< not empty
+  std::string identifier() const;  ///< a letter, then letters, digits and underscores
+  std::string own_identifier(const std::vector<std::string>& taken) const;  ///< one that no earlier entry has
   std::string one_of(const std::vector<std::string>& names) const;
 
   /// The value that the name standing here is paired with.
