@@ -470,9 +470,9 @@ void check_rest(const Scene& scene, const AtRest& rest) {
   require_positive(rest.deadline, place + "/deadline", "a time", "s");
   require(!weightless(scene), place + "/type",
           "at_time where gravity is zero: rest is measured against the weight", "at_rest");
-  const double settled = scene.gravity.settled_after();
+  const double settled = loads_settled_after(scene);
   require(rest.deadline > settled, place + "/deadline",
-          "a time after gravity has settled at " + text_of(settled, "s"), text_of(rest.deadline, "s"));
+          "a time after the loads have settled at " + text_of(settled, "s"), text_of(rest.deadline, "s"));
 }
 
 void check_termination(const Scene& scene) {
@@ -525,6 +525,16 @@ double Gravity::settled_after() const {
                                  return staged.hold * static_cast<double>(last);
                                }},
                     loading);
+}
+
+double loads_settled_after(const Scene& scene) {
+  double latest = scene.gravity.settled_after();
+  for (const SurfaceLoad& load : scene.surface_loads) latest = std::max(latest, load.ramp);
+  for (const Body& body : scene.bodies) {
+    if (body.density_ramp) latest = std::max(latest, body.density_ramp->start + body.density_ramp->duration);
+  }
+  for (const RigidBody& body : scene.rigid_bodies) latest = std::max(latest, body.start + body.ramp);
+  return latest;
 }
 
 void check(const Scene& scene) {

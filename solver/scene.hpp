@@ -173,7 +173,7 @@ struct StableFraction {
 struct AtTime {
   double time;  ///< [s], > 0
 };
-/// At rest, not before gravity has settled: the unbalanced force that the particles feel falls to
+/// At rest, not before all loads have settled: the unbalanced force that the particles feel falls to
 /// `unbalanced_force_ratio` times the total weight, and the grid's kinetic energy to `kinetic_energy_ratio`
 /// times weight * cell size.
 struct AtRest {
@@ -205,6 +205,10 @@ struct Scene {
   std::variant<GivenTimeStep, StableFraction> time_step = StableFraction{0.2};
   std::variant<AtTime, AtRest> termination = AtTime{1.0};
 };
+
+/// Time [s] from which no load on the bodies changes any more: gravity, surface loads, densities
+/// and the ramps of rigid bodies.
+double loads_settled_after(const Scene& scene);
 
 /// Throws SceneError for the first value that makes the scene impossible to simulate.
 void check(const Scene& scene);

@@ -88,7 +88,8 @@ const char* name_of(Ending ending) {
 /// A simulation whose dimension, scalar and shape function have been forgotten.
 class Simulation::Engine {
  public:
-  explicit Engine(const Scene& scene) : scene_(scene), time_step_(time_step_of(scene)) {}
+  explicit Engine(const Scene& scene)
+      : scene_(scene), time_step_(time_step_of(scene)), loads_settled_after_(loads_settled_after(scene)) {}
   virtual ~Engine() = default;
 
   virtual std::int64_t particle_count() const = 0;
@@ -137,7 +138,7 @@ class Simulation::Engine {
       return outcome_.time > at_time->time - 0.5 * time_step_;
     }
     const AtRest& rest = std::get<AtRest>(scene_.termination);
-    if (outcome_.time >= scene_.gravity.settled_after() && outcome_.step % steps_between_rest_checks == 0) {
+    if (outcome_.time >= loads_settled_after_ && outcome_.step % steps_between_rest_checks == 0) {
       const Monitor now = monitor();
       outcome_.ending = Ending::at_rest;
       if (now.unbalanced_force_ratio <= rest.unbalanced_force_ratio &&
@@ -150,7 +151,7 @@ class Simulation::Engine {
   }
 
   Scene scene_;
-  double time_step_;
+  double time_step_, loads_settled_after_;
   Outcome outcome_;
   bool ended_ = false;
 };

@@ -316,6 +316,16 @@ TEST(VerificationOfLoads, ABodyThatGrowsHeavierSettlesToItsFinalWeight) {
   EXPECT_DOUBLE_EQ(scene.bodies[0].density_at(0.2), 2000.0);
 }
 
+TEST(VerificationOfLoads, RestIsNotLookedForBeforeTheLoadsHaveSettled) {
+  // Without its traction the block is at rest from the start.
+  Scene scene = confined_block();
+  scene.damping = 0.8;
+  scene.gravity.acceleration = {0.0, -1e-3};
+  scene.surface_loads = {{"block", 1, 1, 0.0, 0.4, {0.0, -100.0}, 0.3}};
+  scene.termination = AtRest{1e-2, 1e-2, 5.0};
+  EXPECT_GE(run_to_end(scene).time(), 0.3);
+}
+
 TEST(VerificationOfLoads, GroundThatStartsAtItsGeostaticStressStaysAtRest) {
   Scene scene = confined_block();
   scene.gravity.acceleration = {0.0, -10.0};

@@ -246,11 +246,11 @@ const std::vector<Impossible>& impossible_scenes() {
        [](Scene& s) {
          s.termination = AtRest{1e-8, 1e-12, infinity};
        }},
-      {"/termination/deadline", "after gravity has settled at 1 s", "0.5 s",
+      {"/termination/deadline", "after the loads have settled at 1 s", "0.5 s",
        [](Scene& s) {
          s.termination = AtRest{1e-8, 1e-12, 0.5};
        }},
-      {"/termination/deadline", "after gravity has settled at 4 s", "4 s",
+      {"/termination/deadline", "after the loads have settled at 4 s", "4 s",
        [](Scene& s) {
          s.gravity.loading = StagedLoading{2.0, {0.2, 0.5, 1.0}};
          s.termination = AtRest{1e-8, 1e-12, 4.0};

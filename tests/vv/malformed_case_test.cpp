@@ -169,7 +169,7 @@ const std::vector<Malformed>& malformed_cases() {
       {R"([{"op": "add", "path": "/scene/bodies/-", "value": {"name": "upper", "lower": ["0.5 m"], "upper": ["1 m"], "particles_per_cell": [1], "density": "2 g/cm^3", "material": {"law": "zhang_elastic", "youngs_modulus": "10 MPa"}}}])",
        "/references/0", "it needs a single body", "\"equilibrium\"", Schema::cannot_tell},
       {R"([{"op": "replace", "path": "/scene/termination/deadline", "value": "1 s"}])",
-       "/scene/termination/deadline", "after gravity has settled at 1 s", "1 s", Schema::cannot_tell},
+       "/scene/termination/deadline", "after the loads have settled at 1 s", "1 s", Schema::cannot_tell},
 
       // Sweeps.
       {R"([{"op": "replace", "path": "/sweep", "value": []}])", "/sweep", "an array of at least one value",
@@ -206,7 +206,7 @@ const std::vector<Malformed>& malformed_cases() {
       {R"([{"op": "add", "path": "/sweep/2", "value":
            {"parameter": "/scene/gravity/loading/duration", "values": ["1 s", "6 s"]}}])",
        "/sweep/2/values/1",
-       "a value with which /scene/termination/deadline is a time after gravity has settled at 6 s",
+       "a value with which /scene/termination/deadline is a time after the loads have settled at 6 s",
        "\"6 s\", which makes it 5 s", Schema::cannot_tell},
 
       // Sweeps that change several places at once.
