@@ -92,14 +92,10 @@ Footing footing_of(const Scene& scene) {
           ground.density * final_gravity(scene.gravity)};
 }
 
+/// What a strip needs for its load curve.
 std::string why_no_footing(const Scene& scene) {
   if (scene.dimension != 2) return "two dimensions";
-  if (scene.bodies.size() != 1 || scene.bodies.front().ring || scene.bodies.front().density_ramp)
-    return "a single block of ground that keeps its mass";
-  if (scene.driven_motion) return "ground that no motion is imposed on";
-  if ((scene.gravity.acceleration[0] != 0.0 && scene.gravity.level != 0.0) ||
-      final_gravity(scene.gravity) < 0.0)
-    return "gravity straight downwards, if any";
+  if (scene.bodies.size() != 1 || scene.bodies.front().ring) return "a single block of ground";
   if (scene.rigid_bodies.size() != 1) return "a single rigid body";
   const RigidBody& strip = scene.rigid_bodies.front();
   if (strip.velocity[0] != 0.0 || !(strip.velocity[1] < 0.0) || strip.angular_velocity != 0.0)
@@ -113,6 +109,16 @@ std::string why_no_footing(const Scene& scene) {
   if (strip.upper[0] >= ground.upper[0]) return "ground that reaches beyond the strip";
   if (is_half(scene) ? ground.lower[0] != scene.grid_lower[0] : ground.lower[0] >= strip.lower[0])
     return "ground that reaches beyond the strip on its left too, or to a roller at its axis";
+  return "";
+}
+
+/// What both references need of all else that acts on the ground.
+std::string why_not_only_pressed(const Scene& scene) {
+  if (scene.driven_motion) return "ground that no motion is imposed on";
+  if (scene.bodies.front().density_ramp) return "ground that keeps its mass";
+  if ((scene.gravity.acceleration[0] != 0.0 && scene.gravity.level != 0.0) ||
+      final_gravity(scene.gravity) < 0.0)
+    return "gravity straight downwards, if any";
   for (const SurfaceLoad& load : scene.surface_loads) {
     if (load.axis != 1 || load.side != 1 || load.traction[0] != 0.0)
       return "no surface load but a pressure on the surface";
@@ -151,7 +157,8 @@ std::string why_no_stiffness(const Scene& scene) {
 }
 
 std::string why_unsuited_to_footings(const std::string& reference, const Scene& scene) {
-  const std::string missing = why_no_footing(scene);
+  std::string missing = why_no_footing(scene);
+  if (missing.empty()) missing = why_not_only_pressed(scene);
   if (!missing.empty()) return missing;
   return reference == "limit_analysis" ? why_no_limit_load(scene) : why_no_stiffness(scene);
 }
