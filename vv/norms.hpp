@@ -19,7 +19,7 @@ struct Metric {
 /// Every metric there is, in the order a report lists them.
 const std::vector<Metric>& metric_catalogue();
 
-/// Reference solutions a case may ask for: equilibrium, hencky, zhang; of element tests closed_form.
+/// Reference solutions a case may ask for, of scenes and of element tests.
 const std::vector<std::string>& reference_catalogue();
 
 /// What a reference solution needs that a scene does not have, for a person; empty if it describes the scene.
@@ -27,6 +27,10 @@ std::string why_unsuited(const std::string& reference, const Scene& scene);
 
 /// The same of a run, which may be an element test.
 std::string why_unsuited(const std::string& reference, const RunRequest& request);
+
+/// What a reference solution needs that the case does not record of a run, for a person; empty if it records
+/// enough for the run to be judged by it. The reference solution describes the run.
+std::string why_not_judged(const std::string& reference, const Case& definition, const RunRequest& request);
 
 /// What the norms say of a record.
 struct Judgement {
