@@ -1144,6 +1144,13 @@ std::string stamp_of(const vv::CaseVerdict& verdict, const std::vector<Member>& 
                              revision.empty() ? "unknown" : revision, input));
 }
 
+/// [2, 2] is "2 × 2 particles per cell".
+std::string particles_name(const vv::Json& per_axis) {
+  std::string name;
+  for (const vv::Json& count : per_axis) name += (name.empty() ? "" : " × ") + escaped(plain_text(count));
+  return name + " particles per cell";
+}
+
 }  // namespace
 
 std::string escaped(const std::string& text) {
@@ -1190,6 +1197,8 @@ std::string name_of_parameter(const std::string& pointer, const vv::Json& value)
   if (text == "linear_elastic") return "linear elastic (rate form)";
   if (text == "zhang_elastic") return "Zhang’s law";
   if (pointer == "/scene/gravity/loading" && value.is_object()) return loading_name(value);
+  if (pointer.ends_with("/particles_per_cell") && value.is_array()) return particles_name(value);
+  if (pointer.ends_with("/constrains") && value.is_array()) return value.size() > 1 ? "rough" : "smooth";
   return escaped(last_word(pointer) + " " + text);
 }
 

@@ -287,10 +287,9 @@ void read_parts(Case& read) {
   std::vector<std::string> keys = {"$schema",         "id",          "title",
                                    "figure_of_paper", "description", "claims",
                                    "notes",           "quick",       "repeat_on_other_threads",
-                                   "metamorphoses",   "scene",       "element",
-                                   "sweep",           "references",  "gates",
-                                   "figures"};
-  if (!place["element"].present()) keys.insert(keys.end(), {"probes", "snapshots"});
+                                   "scene",           "element",     "sweep",
+                                   "references",      "gates",       "figures"};
+  if (!place["element"].present()) keys.insert(keys.end(), {"metamorphoses", "probes", "snapshots"});
   place.allow_only(keys);
   optional_text(place["$schema"]);
   read_description(place, read);

@@ -29,10 +29,10 @@ void judge_momentum(Judging& judging, double kinetic_energy) {
     const History* momentum = history_of(judging, "momentum", component);
     if (!momentum) continue;
     for (const double value : momentum->value) {
-      largest = std::max(largest, std::abs(value - momentum->value.front()));
+      largest = larger(largest, std::abs(value - momentum->value.front()));
     }
   }
-  if (largest >= 0.0) judging.set("momentum_change", largest / scale);
+  if (!(largest < 0.0)) judging.set("momentum_change", largest / scale);
 }
 
 void judge_energy(Judging& judging, const History& kinetic) {
@@ -41,7 +41,7 @@ void judge_energy(Judging& judging, const History& kinetic) {
   const double start = kinetic.value.front() + strain->value.front();
   double most = 0.0;
   for (std::size_t k = 0; k < kinetic.value.size(); ++k) {
-    most = std::max(most, kinetic.value[k] + strain->value[k]);
+    most = larger(most, kinetic.value[k] + strain->value[k]);
   }
   judging.set("energy_loss", 1 - (kinetic.value.back() + strain->value.back()) / start);
   judging.set("energy_gain", most / start - 1);

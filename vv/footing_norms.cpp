@@ -3,6 +3,7 @@
 #include <map>
 #include <mutex>
 #include <numbers>
+#include <numeric>
 #include <optional>
 #include <tuple>
 
@@ -31,21 +32,74 @@ struct Footing {
   }
 };
 
+/// Whether only the half to the right of the axis is modelled.
+bool is_half(const Scene& scene) {
+  return scene.rigid_bodies.front().lower[0] <= scene.grid_lower[0] && scene.edges[0][0] == Condition::roller;
+}
+
+/// Pressure of all loads on the surface of the ground at x [Pa].
+double load_at(const Scene& scene, double x) {
+  double pressure = 0.0;
+  for (const SurfaceLoad& load : scene.surface_loads) {
+    if (load.begin <= x && x <= load.end) pressure -= load.traction[1];
+  }
+  return pressure;
+}
+
+/// The middles of the parts into which the ground's surface is cut by the ends of the strip and of all loads
+/// [m], from left to right; the last one is beside the strip.
+Values parts_of_surface(const Scene& scene) {
+  const RigidBody& strip = scene.rigid_bodies.front();
+  const Body& ground = scene.bodies.front();
+  Values cuts{ground.lower[0], ground.upper[0], strip.lower[0], strip.upper[0]};
+  for (const SurfaceLoad& load : scene.surface_loads) cuts.insert(cuts.end(), {load.begin, load.end});
+  for (double& x : cuts) x = std::clamp(x, ground.lower[0], ground.upper[0]);
+  std::sort(cuts.begin(), cuts.end());
+  Values middles;
+  for (std::size_t k = 1; k < cuts.size(); ++k) {
+    const bool rounding = cuts[k] - cuts[k - 1] < 1e-6 * scene.cell_size;
+    if (!rounding) middles.push_back((cuts[k - 1] + cuts[k]) / 2);
+  }
+  return middles;
+}
+
+/// Whether all the surface beside the strip bears one pressure and none the surface below it.
+bool is_surcharged_evenly(const Scene& scene) {
+  const RigidBody& strip = scene.rigid_bodies.front();
+  const Values parts = parts_of_surface(scene);
+  const double surcharge = load_at(scene, parts.back());
+  return surcharge >= 0.0 && std::all_of(parts.begin(), parts.end(), [&](double x) {
+           const bool below = strip.lower[0] < x && x < strip.upper[0];
+           return std::abs(load_at(scene, x) - (below ? 0.0 : surcharge)) <= 1e-9 * surcharge;
+         });
+}
+
+/// Acceleration of gravity downwards in the end [m/s^2].
+double final_gravity(const Gravity& gravity) {
+  return -gravity.acceleration[1] * gravity.level * gravity.fraction(gravity.settled_after());
+}
+
 Footing footing_of(const Scene& scene) {
   const RigidBody& strip = scene.rigid_bodies.front();
   const Body& ground = scene.bodies.front();
-  double surcharge = 0.0;
-  for (const SurfaceLoad& load : scene.surface_loads) surcharge -= load.traction[1];
-  const bool half = strip.lower[0] <= scene.grid_lower[0] && scene.edges[0][0] == Condition::roller;
+  const bool half = is_half(scene);
   const double begin = std::max(strip.lower[0], scene.grid_lower[0]);
-  return {strip,     ground,
-          half,      strip.upper[0] - begin,
-          surcharge, -ground.density * scene.gravity.acceleration[1] * scene.gravity.level};
+  return {strip,
+          ground,
+          half,
+          strip.upper[0] - begin,
+          load_at(scene, parts_of_surface(scene).back()),
+          ground.density * final_gravity(scene.gravity)};
 }
 
 std::string why_no_footing(const Scene& scene) {
   if (scene.dimension != 2) return "two dimensions";
-  if (scene.bodies.size() != 1 || scene.bodies.front().ring) return "a single block of ground";
+  if (scene.bodies.size() != 1 || scene.bodies.front().ring || scene.bodies.front().density_ramp)
+    return "a single block of ground that keeps its mass";
+  if (scene.driven_motion) return "ground that no motion is imposed on";
+  if ((scene.gravity.acceleration[0] != 0.0 && scene.gravity.level != 0.0) ||
+      final_gravity(scene.gravity) < 0.0)
+    return "gravity straight downwards, if any";
   if (scene.rigid_bodies.size() != 1) return "a single rigid body";
   const RigidBody& strip = scene.rigid_bodies.front();
   if (strip.velocity[0] != 0.0 || !(strip.velocity[1] < 0.0) || strip.angular_velocity != 0.0)
@@ -57,10 +111,14 @@ std::string why_no_footing(const Scene& scene) {
   if (ground.lower[1] != scene.grid_lower[1] || scene.edges[1][0] != Condition::fixed)
     return "ground that stands on a fixed y_lower edge";
   if (strip.upper[0] >= ground.upper[0]) return "ground that reaches beyond the strip";
+  if (is_half(scene) ? ground.lower[0] != scene.grid_lower[0] : ground.lower[0] >= strip.lower[0])
+    return "ground that reaches beyond the strip on its left too, or to a roller at its axis";
   for (const SurfaceLoad& load : scene.surface_loads) {
     if (load.axis != 1 || load.side != 1 || load.traction[0] != 0.0)
       return "no surface load but a pressure on the surface";
   }
+  if (!is_surcharged_evenly(scene))
+    return "one pressure on all the surface beside the strip and none below it, if any";
   return "";
 }
 
@@ -73,12 +131,18 @@ std::string why_no_limit_load(const Scene& scene) {
   if (soil->friction_angle > 0.0 && soil->cohesion == 0.0 && footing.weight == 0.0 &&
       footing.surcharge == 0.0)
     return "something that gives the ground strength: cohesion, surcharge or weight";
+  const double degrees = soil->friction_angle * 180 / std::numbers::pi;
+  if (footing.weight > 0.0 && (degrees < 1.0 || degrees > 50.0))
+    return "a friction angle from 1 to 50 degrees, where the factor of weight is known";
   return "";
 }
 
 std::string why_no_stiffness(const Scene& scene) {
   const Footing footing = footing_of(scene);
-  if (!std::holds_alternative<LinearElastic>(footing.ground.material)) return "linear elastic ground";
+  const auto* elastic = std::get_if<LinearElastic>(&footing.ground.material);
+  if (!elastic) return "linear elastic ground";
+  if (elastic->poissons_ratio > 0.49) return "Poisson's ratio up to 0.49";
+  if (footing.ground.initial_stress) return "ground that starts free of stress";
   if (!footing.half) return "a half model, its axis a roller at the grid's lower edge";
   if (scene.edges[0][1] != Condition::roller || footing.ground.upper[0] != scene.grid_upper[0])
     return "ground that reaches to a roller on its far side";
@@ -158,8 +222,10 @@ void judge_by_limit_load(Judging& judging, const Footing& footing, const LoadCur
   judging.set("limit_analysis.pressure", mean);
   judging.set("limit_analysis.overshoot", mean / exact - 1);
   judging.set("limit_analysis.shortfall", 1 - mean / exact);
-  judging.set("limit_analysis.peak_overshoot",
-              *std::max_element(curve.pressure.begin(), curve.pressure.end()) / exact - 1);
+  judging.set(
+      "limit_analysis.peak_overshoot",
+      std::accumulate(curve.pressure.begin(), curve.pressure.end(), curve.pressure.front(), larger) / exact -
+          1);
   judging.set("limit_analysis.spread", (*most - *least) / mean);
   judging.result.curves.push_back(
       {"pressure", "limit_analysis", {0.0, curve.settlement.back()}, {exact, exact}, "settlement"});

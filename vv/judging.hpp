@@ -24,6 +24,9 @@ struct Judging {
   bool asks_for(const std::string& reference) const;
 };
 
+/// The larger of two; not a number if either is not, where std::max may lose it.
+double larger(double a, double b);
+
 /// L1 and L2 weighted, L-infinity; each relative to the same norm of the exact field.
 struct RelativeNorms {
   double l1, l2, linf;

@@ -30,11 +30,11 @@ double count_non_finite(const Record& record) {
 }
 
 double largest_compression(const Profile& profile) {
-  double least = 1.0;
+  double largest = 0.0;
   for (std::size_t p = 0; p < profile.volume.size(); ++p) {
-    least = std::min(least, profile.volume[p] / profile.initial_volume[p]);
+    largest = larger(largest, 1 - profile.volume[p] / profile.initial_volume[p]);
   }
-  return 1 - least;
+  return largest;
 }
 
 /// What is measured of every run, whatever it is about.
@@ -100,6 +100,8 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
 
 }  // namespace
 
+double larger(double a, double b) { return a >= b || std::isnan(a) ? a : b; }
+
 RelativeNorms relative_norms(const Values& found, const Values& exact, const Values& weight) {
   double e1 = 0, e2 = 0, em = 0, n1 = 0, n2 = 0, nm = 0;
   for (std::size_t p = 0; p < found.size(); ++p) {
@@ -108,9 +110,8 @@ RelativeNorms relative_norms(const Values& found, const Values& exact, const Val
     n1 += weight[p] * norm;
     e2 += weight[p] * error * error;
     n2 += weight[p] * norm * norm;
-    // Not std::max: it would drop an error that is not a number.
-    if (!(error <= em)) em = error;
-    nm = std::max(nm, norm);
+    em = larger(em, error);
+    nm = larger(nm, norm);
   }
   return {e1 / n1, std::sqrt(e2 / n2), em / nm};
 }

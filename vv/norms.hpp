@@ -19,7 +19,8 @@ struct Metric {
 /// Every metric there is, in the order a report lists them.
 const std::vector<Metric>& metric_catalogue();
 
-/// Reference solutions a case may ask for, of scenes and of element tests.
+/// Reference solutions a case may ask for: of columns equilibrium, hencky and zhang; of footings limit_analysis
+/// and elastic_strip; of motions manufactured, free_fall and rotation; of element tests closed_form.
 const std::vector<std::string>& reference_catalogue();
 
 /// What a reference solution needs that a scene does not have, for a person; empty if it describes the scene.

@@ -151,6 +151,7 @@ std::string scope_of(const std::string& pointer, const Json& value) {
   if (pointer == "/scene/gravity/level") return text + "G";
   if (pointer == "/scene/grid/cell_size") return "h " + text;
   if (pointer.ends_with("/youngs_modulus")) return "E " + text;
+  if (pointer.ends_with("/constrains") && value.is_array()) return value.size() > 1 ? "rough" : "smooth";
   const bool speaks_for_itself = value.is_string() && text.find_first_of("0123456789") == std::string::npos;
   return speaks_for_itself || value.is_object() ? text : last_name_of(pointer) + " " + text;
 }

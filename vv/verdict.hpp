@@ -12,11 +12,11 @@ namespace mpm::vv {
 
 /// One curve exactly as it was judged or as the exact solution gives it; SI units.
 struct Curve {
-  std::string name;       ///< stress, displacement, stress_error, or a probe's id
+  std::string name;       ///< stress, displacement, stress_error, pressure, or a probe's id
   std::string source;     ///< "run", or the reference solution's name
-  std::vector<double> x;  ///< initial height X [m], current height x [m] or time [s]: see `x_name`
+  std::vector<double> x;  ///< initial height X [m], current height x [m], settlement [m] or time [s]: see `x_name`
   std::vector<double> y;
-  std::string x_name;  ///< position, initial_position or time
+  std::string x_name;  ///< position, initial_position, settlement or time
 };
 
 enum class GateStatus {

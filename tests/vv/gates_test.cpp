@@ -213,6 +213,33 @@ TEST(SeriesStatistic, WorstRatioIsTheLargestStep) {
   EXPECT_NEAR(series_result(applied, std::vector<Record>(6), uneven).value, 0.9, 1e-12);
 }
 
+/// The worst ratio of a series of these values, from coarse to fine.
+GateResult worst_ratio_of(const std::vector<double>& values) {
+  Case definition;
+  std::vector<Record> records(values.size());
+  double size = 1.0;
+  for (std::size_t k = 0; k < values.size(); ++k) definition.runs.push_back(request(size /= 2, "cpgimp"));
+  definition.gates = {series_gate(Statistic::worst_ratio, Comparison::at_most, 0.95)};
+  const Judge by_size = [&](const Case&, const RunRequest& of, const Record&) {
+    const auto level = static_cast<std::size_t>(std::lround(-std::log2(of.scene.cell_size))) - 1;
+    return Judgement{{{"error", values.at(level)}}, {}};
+  };
+  return judge_case(definition, records, by_size).series.at(0).gates.at(0);
+}
+
+TEST(SeriesStatistic, WorstRatioThatIsNoNumberSomewhereIsNoNumber) {
+  EXPECT_NEAR(worst_ratio_of({1.0, 0.5, 0.45, 0.1}).value, 0.9, 1e-12);
+  // 0/0 first, in the middle and last; what follows a zero can fall again by way of minus infinity only.
+  for (const auto& values : std::vector<std::vector<double>>{{0.0, 0.0, -1.0, -0.5, -0.25},
+                                                             {1.0, 0.5, 0.0, 0.0, -1.0, -0.5},
+                                                             {1.0, 0.5, 0.0, 0.0}}) {
+    const GateResult result = worst_ratio_of(values);
+    EXPECT_TRUE(std::isnan(result.value)) << values.size();
+    EXPECT_EQ(result.status, GateStatus::fail);
+    EXPECT_EQ(result.detail, "the statistic of these values is not a finite number");
+  }
+}
+
 TEST(SeriesStatistic, LastOrderIsOfTheFinestPair) {
   const Judge uneven = [](const Case&, const RunRequest& of, const Record&) {
     // orders log2(1/0.8) and log2(0.8/0.1) = 3
