@@ -256,6 +256,17 @@ void require_suited(const JsonPlace& place, const Case& read) {
   }
 }
 
+/// A gate on a metric for which too little is recorded would only find that it was not measured.
+void require_recorded(const JsonPlace& place, const Case& read) {
+  for (const JsonPlace& name : place.elements()) {
+    for (const RunRequest& run : read.runs) {
+      const std::string missing = why_not_judged(name.text(), read, run);
+      if (missing.empty()) continue;
+      name.refuse("a reference solution for which the case records enough; it needs " + missing, in_run(run));
+    }
+  }
+}
+
 /// Other descriptions of the scene, each of which every run must have.
 std::vector<std::string> read_metamorphoses(const JsonPlace& place, const Case& read) {
   if (!place.present()) return {};
@@ -290,6 +301,7 @@ void read_parts(Case& read) {
   read.metamorphoses = read_metamorphoses(place["metamorphoses"], read);
   read.probes = read_probes(place["probes"], read.runs);
   read.snapshots = read_snapshots(place["snapshots"], read.runs, read.probes);
+  require_recorded(place["references"], read);
   for (const JsonPlace& gate : place["gates"].some_elements()) read.gates.push_back(read_gate(gate, read));
   if (const JsonPlace claims = place["claims"]; claims.present()) {
     for (const JsonPlace& claim : claims.elements()) read.claims.push_back(read_claim(claim, read));

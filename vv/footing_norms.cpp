@@ -173,6 +173,17 @@ double limit_pressure(const Footing& footing) {
   return soil.cohesion * reference::exact_nc(phi) + footing.surcharge * reference::exact_nq(phi);
 }
 
+bool records_load(const HistoryProbe& probe, const RigidBody& strip) {
+  return probe.quantity == "reaction" && probe.of == strip.name && probe.component == "y";
+}
+
+std::string why_no_load_curve(const std::string&, const Case& definition, const RunRequest& request) {
+  const RigidBody& strip = request.scene.rigid_bodies.front();
+  const bool recorded = std::any_of(definition.probes.begin(), definition.probes.end(),
+                                    [&](const HistoryProbe& probe) { return records_load(probe, strip); });
+  return recorded ? "" : "a probe of the reaction of " + strip.name + ", component y";
+}
+
 /// Pressure below the strip over its settlement, from the probe that records its reaction.
 struct LoadCurve {
   Values settlement;  ///< [m]
@@ -181,8 +192,7 @@ struct LoadCurve {
 
 std::optional<LoadCurve> load_curve_of(const Judging& judging, const Footing& footing) {
   for (std::size_t i = 0; i < judging.definition.probes.size(); ++i) {
-    const HistoryProbe& probe = judging.definition.probes[i];
-    if (probe.quantity != "reaction" || probe.of != footing.strip.name || probe.component != "y") continue;
+    if (!records_load(judging.definition.probes[i], footing.strip)) continue;
     const History& history = judging.record.histories.at(i);
     LoadCurve curve;
     // A sample is the mean since the one before: it belongs to the settlement halfway.
@@ -285,7 +295,8 @@ std::vector<Metric> catalogue() {
 }  // namespace
 
 NormFamily footing_norms() {
-  return {{"limit_analysis", "elastic_strip"}, catalogue(), why_unsuited_to_footings, judge};
+  return {
+      {"limit_analysis", "elastic_strip"}, catalogue(), why_unsuited_to_footings, judge, why_no_load_curve};
 }
 
 }  // namespace mpm::vv

@@ -52,6 +52,10 @@ struct NormFamily {
   std::string (*why_unsuited)(const std::string& reference, const Scene& scene);
   /// Judges a run that completed.
   void (*judge)(Judging& judging);
+  /// Empty, or what the reference solution needs that the case does not record; null if it needs no probe and
+  /// no snapshot.
+  std::string (*why_not_judged)(const std::string& reference, const Case& definition,
+                                const RunRequest& request) = nullptr;
 };
 
 NormFamily column_norms();        ///< columns settled under their own weight

@@ -18,6 +18,13 @@ const Snapshot* end_of(const Record& record) {
   return found == record.snapshots.end() ? nullptr : &*found;
 }
 
+std::string why_no_end(const std::string&, const Case& definition, const RunRequest&) {
+  const bool kept =
+      std::any_of(definition.snapshots.begin(), definition.snapshots.end(),
+                  [](const SnapshotRequest& request) { return request.when == SnapshotRequest::When::end; });
+  return kept ? "" : "a snapshot of the end, {\"end\": true}";
+}
+
 /// Values and weights of every component of a field, particle by particle.
 Values repeated(const Values& of_particles, std::size_t components) {
   Values all;
@@ -271,7 +278,7 @@ std::vector<Metric> catalogue() {
 }  // namespace
 
 NormFamily motion_norms() {
-  return {{"manufactured", "free_fall", "rotation"}, catalogue(), why_unsuited_to_motions, judge};
+  return {{"manufactured", "free_fall", "rotation"}, catalogue(), why_unsuited_to_motions, judge, why_no_end};
 }
 
 }  // namespace mpm::vv

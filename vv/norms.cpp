@@ -164,6 +164,14 @@ std::string why_unsuited(const std::string& reference, const RunRequest& request
   return reference == "closed_form" ? "" : "a scene";
 }
 
+std::string why_not_judged(const std::string& reference, const Case& definition, const RunRequest& request) {
+  for (const NormFamily& family : families()) {
+    if (!contains(family.references, reference)) continue;
+    return family.why_not_judged ? family.why_not_judged(reference, definition, request) : "";
+  }
+  return "to be known";
+}
+
 Judgement judge(const Case& definition, const RunRequest& request, const Record& record) {
   Judging judging{definition, request, record, {}};
   judging.set("completed", record.completed() ? 1 : 0);

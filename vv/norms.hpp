@@ -29,6 +29,10 @@ std::string why_unsuited(const std::string& reference, const Scene& scene);
 /// The same of a run, which may be an element test.
 std::string why_unsuited(const std::string& reference, const RunRequest& request);
 
+/// What a reference solution needs that the case does not record of a run, for a person; empty if it records
+/// enough for the run to be judged by it. The reference solution describes the run.
+std::string why_not_judged(const std::string& reference, const Case& definition, const RunRequest& request);
+
 /// What the norms say of a record.
 struct Judgement {
   std::map<std::string, double> metrics;  ///< finite values only

@@ -207,6 +207,99 @@ TEST(CaseFile, sweeps_over_several_places_at_once) {
   }
 }
 
+// ---- what must be recorded for a reference solution
+// ---------------------------------------------------------------
+
+/// A rough strip pressed into half of a weightless soil.
+Json strip_case() {
+  Json text = soil_case();
+  text.erase("sweep");
+  Json& scene = text["scene"];
+  scene["grid"]["upper"] = {"0.5 m", "1.2 m"};
+  scene["grid"]["edges"] = {
+      {"x_lower", "roller"}, {"x_upper", "roller"}, {"y_lower", "fixed"}, {"y_upper", "free"}};
+  scene["bodies"][0].erase("velocity");
+  scene["gravity"]["level"] = 0;
+  scene["termination"] = {{"type", "at_time"}, {"time", "2 s"}};
+  scene["rigid_bodies"] =
+      Json::parse(R"([{ "name": "strip", "lower": ["0 m", "1 m"], "upper": ["0.2 m", "1.1 m"],
+    "velocity": ["0 m/s", "-1 mm/s"] }])");
+  text["probes"] =
+      Json::parse(R"([{ "id": "load", "quantity": "reaction", "of": "strip", "every": "0.01 s" }])");
+  text["references"] = {"limit_analysis"};
+  return text;
+}
+
+/// The same pressed into an elastic layer.
+Json elastic_strip_case() {
+  Json text = strip_case();
+  text["scene"]["bodies"][0]["material"] = {
+      {"law", "linear_elastic"}, {"youngs_modulus", "1 MPa"}, {"poissons_ratio", 0.3}};
+  text["references"] = {"elastic_strip"};
+  return text;
+}
+
+TEST(CaseFile, needs_the_load_on_the_strip_for_what_judges_footings) {
+  for (const Json& text : {strip_case(), elastic_strip_case()}) {
+    EXPECT_EQ(refusal_of(text.dump()), "");
+    const std::string name = text["references"][0].dump();
+    const auto expect_refused = [&](const char* patch) {
+      expect_message(refusal_of(text.patch(Json::parse(patch)).dump()), "column.json", "/references/0",
+                     "the case records enough; it needs a probe of the reaction of strip, component y", name);
+    };
+    expect_refused(R"([{"op": "remove", "path": "/probes"}])");
+    expect_refused(R"([{"op": "add", "path": "/probes/0/component", "value": "x"}])");
+    expect_refused(R"([{"op": "replace", "path": "/probes/0/quantity", "value": "displacement"}])");
+  }
+}
+
+/// A soil in free fall, and one that turns as a whole.
+Json falling_case() {
+  Json text = soil_case();
+  text.erase("sweep");
+  Json& scene = text["scene"];
+  for (auto& [edge, condition] : scene["grid"]["edges"].items()) condition = "free";
+  scene["damping"] = 0;
+  scene["gravity"]["loading"] = {{"type", "step"}};
+  scene["termination"] = {{"type", "at_time"}, {"time", "0.1 s"}};
+  text["references"] = {"free_fall"};
+  return text;
+}
+
+Json turning_case() {
+  Json text = falling_case();
+  text["scene"]["rigid_bodies"] = Json::parse(
+      R"([{ "name": "all", "lower": ["0 m", "0 m"], "upper": ["1.2 m", "1.2 m"], "angular_velocity": "1 rad/s" }])");
+  text["scene"]["bodies"][0]["initial_stress"] = {{"type", "uniform"}, {"xx", "-1 kPa"}};
+  text["references"] = {"rotation"};
+  return text;
+}
+
+TEST(CaseFile, needs_the_end_for_what_judges_motions) {
+  Json wave = wave_case();
+  wave["references"] = {"manufactured"};
+  for (Json text : {wave, falling_case(), turning_case()}) {
+    const std::string name = text["references"][0].dump();
+    for (const char* snapshots : {"[]", R"([{"time": "0.01 s"}])"}) {
+      text["snapshots"] = Json::parse(snapshots);
+      expect_message(refusal_of(text.dump()), "column.json", "/references/0",
+                     "the case records enough; it needs a snapshot of the end, {\"end\": true}", name);
+    }
+    text["snapshots"] = Json::parse(R"([{"time": "0.01 s"}, {"end": true}])");
+    EXPECT_EQ(refusal_of(text.dump()), "");
+  }
+}
+
+TEST(CaseFile, tells_for_which_run_too_little_is_recorded) {
+  Json text = strip_case();
+  text.erase("probes");
+  text["sweep"] =
+      Json::parse(R"([{ "parameter": "/scene/rigid_bodies/0/name", "values": ["plate", "strip"] }])");
+  expect_message(refusal_of(text.dump()), "column.json", "/references/0",
+                 "the reaction of plate, component y",
+                 "in the run with /scene/rigid_bodies/0/name = \"plate\"");
+}
+
 // ---- schema
 // -------------------------------------------------------------------------------------------------------
 

@@ -432,8 +432,8 @@ const std::vector<Malformed>& malformed_footings() {
       {R"([{"op": "add", "path": "/scene/rigid_bodies/0/velocty", "value": ["0 m/s", "1 m/s"]}])",
        "/scene/rigid_bodies/0/velocty", "one of the keys name, lower",
        "\"velocty\" (did you mean \"velocity\"?)", Schema::refuses},
-      {R"([{"op": "add", "path": "/scene/rigid_body", "value": []}])", "/scene/rigid_body",
-       "one of the keys dimension", "\"rigid_body\" (did you mean \"rigid_bodies\"?)", Schema::refuses},
+      {R"([{"op": "add", "path": "/scene/rigid_bodys", "value": []}])", "/scene/rigid_bodys",
+       "one of the keys dimension", "\"rigid_bodys\" (did you mean \"rigid_bodies\"?)", Schema::refuses},
 
       // Surface loads.
       {R"([{"op": "add", "path": "/scene/surface_load", "value": []}])", "/scene/surface_load",
