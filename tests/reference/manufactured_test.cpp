@@ -249,8 +249,8 @@ TEST(VerificationOfManufacturedSolution, TheVortexTurnsCirclesAndKeepsTheVolume)
       const Tensor f = vortex->deformation_gradient(place, time);
       EXPECT_NEAR(f[0] * f[3] - f[1] * f[2], 1.0, 1e-12);
     }
-  // A shear of R h' = 3 or so: there is something to keep the volume in spite of.
-  EXPECT_GT(std::abs(vortex->stress({0.86, 0.0}, time).xy), soil.youngs_modulus / 2);
+  // A shear of R h' = 1.7 or so: there is something to keep the volume in spite of.
+  EXPECT_GT(std::abs(vortex->stress({0.86, 0.0}, time).xy), soil.youngs_modulus / 4);
 }
 
 TEST(VerificationOfManufacturedSolution, TheVortexLeavesItsFacesFreeAndTheOutsideAlone) {
@@ -269,7 +269,7 @@ TEST(VerificationOfManufacturedSolution, TheVortexLeavesItsFacesFreeAndTheOutsid
   }
   // No jump at the faces: the force next to them is small beside what drives the middle.
   EXPECT_LT(std::abs(vortex->body_force({1.249, 0.0}, time)[1]),
-            1e-3 * std::abs(vortex->body_force({1.1, 0.0}, time)[1]));
+            1e-2 * std::abs(vortex->body_force({1.1, 0.0}, time)[1]));
   // At the start there is but the centripetal force of its first speed, alpha' = pi.
   EXPECT_NEAR(vortex->body_force({1.0, 0.0}, 0.0)[0], -pi * pi, 1e-13);
   EXPECT_NEAR(vortex->body_force({1.0, 0.0}, 0.0)[1], 0.0, 1e-13);
