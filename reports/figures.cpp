@@ -126,7 +126,7 @@ constexpr Named reference_names[] = {
     {"zhang", "Zhang, the published solution", "Zhang"},
     {"manufactured", "manufactured solution, exact motion", "the manufactured solution"},
     {"limit_analysis", "limit analysis, exact limit load", "limit analysis"},
-    {"elastic_strip", "elastic strip, closed form", "the elastic strip"},
+    {"elastic_strip", "elastic strip, exact stiffness", "the elastic strip"},
     {"free_fall", "free fall, exact motion", "free fall"},
     {"rotation", "rigid rotation, exact stress", "rigid rotation"},
     {"closed_form", "closed form", "the closed form"},
@@ -150,7 +150,15 @@ constexpr std::pair<const char*, const char*> metric_names[] = {
     {"energy_gain", "gain of energy"},
     {"bar.frequency", "error of the bar’s frequency"},
     {"bar.amplitude", "error of the bar’s amplitude"},
-    {"element.yield_excess", "stress beyond yield"},
+    {"element.oracle", "distance from every other way to return"},
+    {"element.excess", "stress beyond the limit"},
+    {"element.plastic_work", "least plastic work"},
+    {"element.rotation", "difference when turned"},
+    {"element.exchange", "difference when axes are exchanged"},
+    {"element.stress", "error of stress against the closed form"},
+    {"element.volume", "error of volume against the closed form"},
+    {"element.dilation", "error of dilation against the closed form"},
+    {"element.limit", "error of the limit against the closed form"},
 };
 
 const Named* named_reference(const std::string& reference) {
@@ -998,6 +1006,12 @@ std::string order_note(const vv::CaseVerdict& verdict, const vv::FigureRequest& 
   return "";
 }
 
+/// What a panel about a metric is called: "against Hencky", "Overshoot of the exact limit load".
+std::string subject_of(const std::string& metric) {
+  if (error_name(metric).empty()) return capitalised(name_of_metric(metric));
+  return "against " + short_name_of_reference(metric.substr(0, metric.find('.')));
+}
+
 Panel convergence_panel(const std::vector<Member>& members, const vv::CaseVerdict& verdict,
                         const vv::FigureRequest& request, const std::string& metric,
                         const std::string& title) {
@@ -1005,10 +1019,11 @@ Panel convergence_panel(const std::vector<Member>& members, const vv::CaseVerdic
   panel.title = title;
   panel.x.label = "cell size <i>h</i> [mm]";
   panel.y.label = axis_name_of_metric(metric);
-  const std::string subject = error_name(metric).empty()
-                                  ? capitalised(name_of_metric(metric))
-                                  : "against " + short_name_of_reference(metric.substr(0, metric.find('.')));
-  panel.title += (title.empty() ? "" : ", ") + subject;
+  // Where all panels are about the same, the axis says it and the title need not.
+  const std::string subject = subject_of(metric);
+  const bool alike = std::all_of(request.metrics.begin(), request.metrics.end(),
+                                 [&](const std::string& other) { return subject_of(other) == subject; });
+  if (title.empty() || !alike) panel.title += (title.empty() ? "" : ", ") + subject;
   panel.x.scale = panel.y.scale = Scale::logarithmic;
   std::vector<double> values;
   Extent sizes;
@@ -1199,6 +1214,7 @@ std::string name_of_parameter(const std::string& pointer, const vv::Json& value)
   if (pointer == "/scene/gravity/loading" && value.is_object()) return loading_name(value);
   if (pointer.ends_with("/particles_per_cell") && value.is_array()) return particles_name(value);
   if (pointer.ends_with("/constrains") && value.is_array()) return value.size() > 1 ? "rough" : "smooth";
+  if (pointer == "/element/path") return escaped(spaced(text));
   return escaped(last_word(pointer) + " " + text);
 }
 

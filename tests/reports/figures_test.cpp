@@ -217,11 +217,11 @@ TEST(Curves, DrawEveryReferenceUnlessSomeAreNamed) {
   const Plot all = plot(verdict, "settling");
   ASSERT_TRUE(curve(all.panels[0], "limit analysis, exact limit load"));
   EXPECT_FALSE(curve(all.panels[0], "limit analysis, exact limit load")->look.dash.empty());
-  EXPECT_TRUE(curve(all.panels[0], "elastic strip, closed form"));
+  EXPECT_TRUE(curve(all.panels[0], "elastic strip, exact stiffness"));
   vv::FigureRequest named = request(verdict, "settling");
   named.references = {"limit_analysis"};
   EXPECT_TRUE(curve(plot_of(verdict, named).panels[0], "limit analysis, exact limit load"));
-  EXPECT_FALSE(curve(plot_of(verdict, named).panels[0], "elastic strip, closed form"));
+  EXPECT_FALSE(curve(plot_of(verdict, named).panels[0], "elastic strip, exact stiffness"));
 }
 
 TEST(Curves, ARunWithoutItsCurveIsNamed) {
