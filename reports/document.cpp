@@ -158,10 +158,14 @@ data row_of(const PlacedGate& gate) {
                  {"detail", gate.result->detail}});
 }
 
-/// Rows of one gate. Runs that gave the same value with the same result share a row, all of them named.
-data rows_of(const std::vector<PlacedGate>& gates) {
+// Longer lists are folded away: they are looked up, not read.
+constexpr std::size_t longest_open_table = 12;  // runs
+constexpr std::size_t longest_open_gate = 5;    // results of a gate, or runs that share one
+
+/// Results of one gate. Runs that gave the same value with the same result share one, all of them named.
+std::vector<PlacedGate> merged_results(const std::vector<PlacedGate>& gates) {
   std::vector<PlacedGate> merged;
-  std::vector<int> counts;
+  std::vector<std::size_t> counts;
   for (const PlacedGate& gate : gates) {
     const auto same = std::find_if(merged.begin(), merged.end(), [&gate](const PlacedGate& other) {
       return std::isfinite(gate.result->value) && other.result->value == gate.result->value &&
@@ -177,13 +181,44 @@ data rows_of(const std::vector<PlacedGate>& gates) {
       ++counts[static_cast<std::size_t>(same - merged.begin())];
     }
   }
-  data rows = list();
   for (std::size_t i = 0; i < merged.size(); ++i) {
-    if (counts[i] > 1)
-      merged[i].scope = fmt::format("{} runs alike<br><small>{}</small>", counts[i], merged[i].scope);
-    rows << row_of(merged[i]);
+    const char* form =
+        counts[i] > longest_open_gate
+            ? "<details class=\"norms\"><summary>{} runs alike</summary><small>{}</small></details>"
+            : "{} runs alike<br><small>{}</small>";
+    if (counts[i] > 1) merged[i].scope = fmt::format(fmt::runtime(form), counts[i], merged[i].scope);
   }
-  return rows;
+  return merged;
+}
+
+/// The result with the least to spare: of a gate the least margin, of a control, which must violate, the
+/// most.
+const PlacedGate& closest(const std::vector<PlacedGate>& results) {
+  return *std::min_element(results.begin(), results.end(), [](const PlacedGate& a, const PlacedGate& b) {
+    const double sign = a.result->must_fail ? -1.0 : 1.0;
+    return sign * vv::margin(*a.result) < sign * vv::margin(*b.result);
+  });
+}
+
+/// Sets the rows of a gate: all of a few results; of many the closest and every bad one, the rest folded
+/// away.
+void set_rows(data& group, const std::vector<PlacedGate>& gates) {
+  const std::vector<PlacedGate> results = merged_results(gates);
+  const bool folds = results.size() > longest_open_gate;
+  data shown = list(), folded = list();
+  if (folds) {
+    PlacedGate nearest = closest(results);
+    nearest.scope = fmt::format("closest of {}: {}", results.size(), nearest.scope);
+    shown << row_of(nearest);
+  }
+  for (const PlacedGate& result : results) {
+    if (!folds || !result.result->good()) shown << row_of(result);
+    if (folds) folded << row_of(result);
+  }
+  group.set("rows", shown);
+  group.set("folds", flag(folds));
+  group.set("folded_rows", folded);
+  group.set("result_count", std::to_string(results.size()));
 }
 
 /// Results under their gate, controls apart from gates.
@@ -203,7 +238,7 @@ data gate_groups(const std::vector<PlacedGate>& gates, bool controls) {
                          {"statistic", statistic_of(first)},
                          {"basis", first.basis},
                          {"reason", first.reason}});
-    group.set("rows", rows_of(by_id[id]));
+    set_rows(group, by_id[id]);
     groups << group;
   }
   return groups;
@@ -290,9 +325,6 @@ std::string column_title(const std::string& metric) {
       rest.begin(), rest.end(), [](char c) { return c == '_' || c == '.'; }, ' ');
   return escaped(rest) + suffix + unit;
 }
-
-// A longer table of runs is folded away: it is looked up, not read.
-constexpr std::size_t longest_open_table = 12;
 
 data metric_tables(const vv::CaseVerdict& verdict) {
   std::vector<std::string> names;
@@ -439,6 +471,8 @@ data case_section(const vv::CaseVerdict& verdict, const std::vector<DrawnFigure>
   set_list(section, "controls", gate_groups(gates, true));
   set_list(section, "series", series_tables(verdict));
   set_list(section, "runs", run_rows(verdict));
+  section.set("runs_folded", flag(verdict.runs.size() > longest_open_table));
+  section.set("run_count", std::to_string(verdict.runs.size()));
   section.set("metric_tables", metric_tables(verdict));
   data notes = list();
   for (const std::string& note : definition.notes) notes << object({{"text", note}});

@@ -87,9 +87,9 @@ TEST(Document, RunsThatShareARowAreAllNamed) {
   for (vv::RunVerdict& run : campaign.cases[0].runs)
     if (!run.gates[0].must_fail) run.gates[0].value = 0.0;
   const std::string html = report_html(campaign, {});
-  EXPECT_TRUE(has(
-      html,
-      "11 runs alike<br><small><span class=\"run\">1G, MPM</span>; <span class=\"run\">1G, uGIMP</span>;"));
+  EXPECT_TRUE(has(html,
+                  "11 runs alike</summary><small><span class=\"run\">1G, MPM</span>; <span class=\"run\">1G, "
+                  "uGIMP</span>;"));
   EXPECT_TRUE(has(html, "<span class=\"run\">50G, cpGIMP</span></small>"));
 }
 
@@ -99,6 +99,23 @@ TEST(Document, AFailedRunDoesNotHideInASharedRow) {
     if (!run.gates[0].must_fail) run.gates[0].value = 0.0;
   campaign.cases[0].runs[4].gates[0].status = vv::GateStatus::fail;
   EXPECT_TRUE(has(report_html(campaign, {}), "10 runs alike"));
+}
+
+TEST(Document, OfManyResultsOfAGateTheClosestAndTheBadOnesStayOpen) {
+  vv::CampaignVerdict campaign = support::demo_campaign();
+  double value = 0.001;
+  for (vv::RunVerdict& run : campaign.cases[0].runs)
+    if (!run.gates[0].must_fail) run.gates[0].value = value += 0.0001;
+  vv::GateResult& bad = campaign.cases[0].runs[0].gates[0];
+  bad.status = vv::GateStatus::fail;
+  const std::string html = report_html(campaign, {});
+  const std::size_t closest = html.find("closest of 11: "), folded = html.find("all 11 results");
+  ASSERT_NE(closest, std::string::npos);
+  ASSERT_NE(folded, std::string::npos);
+  const std::string open = html.substr(closest, folded - closest);
+  EXPECT_TRUE(has(open, "50G, cpGIMP")) << "the last has the largest value";
+  EXPECT_TRUE(has(open, "1G, MPM")) << "the failed one";
+  EXPECT_FALSE(has(open, "20G, uGIMP"));
 }
 
 TEST(Document, AFindingHoldsOnlyWhileItsGatesAreGood) {
@@ -153,9 +170,11 @@ TEST(Document, FoldsLongTablesOfNormsAndLeavesShortOnesOpen) {
   vv::CampaignVerdict campaign = support::demo_campaign();
   campaign.cases.resize(1);
   ASSERT_EQ(campaign.cases[0].runs.size(), 12U);
-  EXPECT_FALSE(has(report_html(campaign, {}), "<details class=\"norms\""));
+  EXPECT_FALSE(has(report_html(campaign, {}), ": table of 12 runs"));
+  EXPECT_FALSE(has(report_html(campaign, {}), "what became of all"));
   campaign.cases[0].runs.push_back(campaign.cases[0].runs.back());
   const std::string html = report_html(campaign, {});
+  EXPECT_TRUE(has(html, "what became of all 13 runs"));
   EXPECT_TRUE(has(
       html, "<details class=\"norms\">\n<summary>Against Hencky, exact for the rate law: table of 13 runs"));
   std::size_t opened = 0, closed = 0;
