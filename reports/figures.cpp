@@ -417,10 +417,20 @@ struct Quantity {
   std::string label;
 };
 
-Quantity quantity_of(const std::string& name) {
+int dimension_of(const std::vector<Member>& members) {
+  return members.empty() || !members.front().scene ? 1 : members.front().scene->dimension;
+}
+
+Quantity quantity_of(const std::string& name, int dimension) {
   if (name == "stress") return {1e-3, "stress <i>σ</i> [kPa]"};
   if (name == "displacement") return {1e3, "displacement <i>u</i> [mm]"};
   if (name == "velocity") return {1e3, "velocity <i>v</i> [mm/s]"};
+  const std::string per = dimension == 1 ? "/m²" : "/m";  // of the dimensions the model does not have
+  if (name == "reaction") return {1e-3, "reaction [kN" + per + "]"};
+  if (name == "weight") return {1e-3, "weight [kN" + per + "]"};
+  if (name == "kinetic_energy") return {1.0, "kinetic energy [J" + per + "]"};
+  if (name == "strain_energy") return {1.0, "strain energy [J" + per + "]"};
+  if (name == "momentum") return {1.0, "momentum [N s" + per + "]"};
   if (name == "stress_error") return {1.0, "error of stress / max |<i>σ</i><sub>exact</sub>|"};
   return {1.0, escaped(name)};
 }
@@ -499,7 +509,7 @@ PlotCurve zero_line(const Range& heights) {
 
 Panel profile_panel(const std::vector<Member>& members, const vv::FigureRequest& request,
                     const std::string& title) {
-  const Quantity quantity = quantity_of(request.quantity);
+  const Quantity quantity = quantity_of(request.quantity, dimension_of(members));
   Panel panel;
   panel.title = title;
   panel.x.label = quantity.label;
@@ -563,7 +573,8 @@ Panel history_panel(const std::vector<Member>& members, const vv::CaseVerdict& v
   const auto& probes = verdict.definition.probes;
   const auto probe = std::find_if(probes.begin(), probes.end(),
                                   [&request](const vv::HistoryProbe& p) { return p.id == request.quantity; });
-  const Quantity quantity = quantity_of(probe != probes.end() ? probe->quantity : request.quantity);
+  const Quantity quantity =
+      quantity_of(probe != probes.end() ? probe->quantity : request.quantity, dimension_of(members));
   panel.x.label = "time <i>t</i> [s]";
   panel.y.label = quantity.label;
   const std::size_t symbol_end = panel.y.label.find("</i>");
