@@ -23,6 +23,8 @@ double count_non_finite(const Record& record) {
   };
   const Profile& p = record.profile;
   for (const Values* field : {&p.position, &p.displacement, &p.stress, &p.volume, &p.half_size}) add(*field);
+  // The profile is a part of the final state.
+  count = std::max(count, static_cast<double>(record.non_finite_values));
   for (const History& history : record.histories) add(history.value);
   for (const ElementCurve& path : record.paths) add(path.value);
   for (const auto& [name, value] : record.measured) add({value});

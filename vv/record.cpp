@@ -435,6 +435,7 @@ class Recorder {
     take_last_snapshots(now);
     record.snapshots = std::move(snapshots_);
     for (Sampler& sampler : samplers_) record.histories.push_back(std::move(sampler).history());
+    record.non_finite_values = non_finite_values_of(end);
     record.digest = digest_of(end, record);
     record.cost = {.wall_seconds = std::chrono::duration<double>(wall_).count(),
                    .steps = simulation_.steps(),
@@ -470,6 +471,17 @@ class Recorder {
             .initial_volume = fields.initial_volume,
             .mass = fields.mass,
             .half_size = component_of(fields.half_size, particles, axis)};
+  }
+
+  static std::int64_t non_finite_values_of(const ParticleFields& fields) {
+    std::int64_t count = 0;
+    for (const auto* field :
+         {&fields.displacement, &fields.position, &fields.velocity, &fields.half_size, &fields.stress,
+          &fields.volume, &fields.mass, &fields.strain, &fields.deformation_gradient}) {
+      count +=
+          std::count_if(field->begin(), field->end(), [](double value) { return !std::isfinite(value); });
+    }
+    return count;
   }
 
   static std::string digest_of(const ParticleFields& fields, const Record& record) {
@@ -639,6 +651,7 @@ Json to_json(const Record& record) {
           {"kinetic_energy_ratio", number(record.kinetic_energy_ratio)},
           {"cell_crossings", record.cell_crossings},
           {"relative_mass_change", number(record.relative_mass_change)},
+          {"non_finite_values", record.non_finite_values},
           {"digest", record.digest},
           {"repeat_digest", record.repeat_digest},
           {"cost",
@@ -669,6 +682,7 @@ Record record_from_json(const Json& json) {
   record.kinetic_energy_ratio = number_from(json.at("kinetic_energy_ratio"));
   record.cell_crossings = json.at("cell_crossings").get<std::int64_t>();
   record.relative_mass_change = number_from(json.at("relative_mass_change"));
+  record.non_finite_values = json.at("non_finite_values").get<std::int64_t>();
   record.digest = json.at("digest").get<std::string>();
   record.repeat_digest = json.at("repeat_digest").get<std::string>();
   record.cost = {.wall_seconds = number_from(cost.at("wall_seconds")),

@@ -63,6 +63,7 @@ struct Record {
   double kinetic_energy_ratio = 0.0;
   std::int64_t cell_crossings = 0;    ///< particle centres that changed cell, counted every step
   double relative_mass_change = 0.0;  ///< of the sum over the particles, end against start and density ramps
+  std::int64_t non_finite_values = 0;  ///< in the final state of all particles, every field and component
   std::string digest;                 ///< of the bits of the final state; equal digests mean equal bits
   std::string repeat_digest;  ///< the same of the repeat on another number of threads; empty without one
   Profile profile;

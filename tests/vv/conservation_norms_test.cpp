@@ -54,6 +54,14 @@ TEST(MomentumChange, IsTheLargestOverTheMomentumOfTheInitialEnergy) {
   EXPECT_NEAR(upwards.metrics().at("momentum_change"), 0.05, 1e-15);
 }
 
+TEST(NonFiniteValues, CountTheWholeFinalStateAndEveryHistory) {
+  Trial trial;
+  EXPECT_EQ(trial.metrics().at("non_finite_values"), 0.0);
+  trial.record.non_finite_values = 2;  // sideways, where the profile does not look
+  trial.probe("momentum", "x", {0.3, not_a_number});
+  EXPECT_EQ(trial.metrics().at("non_finite_values"), 3.0);
+}
+
 TEST(MomentumChange, IsNothingWhereNothingChanges) {
   Trial trial;
   trial.probe("momentum", "x", {0.3, 0.3, 0.3}).probe("kinetic_energy", "", {4.0, 1.0, 0.5});

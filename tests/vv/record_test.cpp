@@ -61,6 +61,7 @@ Record full_record() {
   record.kinetic_energy_ratio = -infinity;
   record.cell_crossings = 9'007'199'254'740'993;
   record.relative_mass_change = -0.0;
+  record.non_finite_values = 3;
   record.digest = "0000000000000001";
   record.repeat_digest = "0000000000000002";
   record.profile = {{0.0, 0.5}, {-1e-3, -2e-3}, {1e-300, 5e-324}, {nan, -0.0},
@@ -91,6 +92,7 @@ TEST(RecordText, BringsBackEveryBit) {
   EXPECT_EQ(read.outcome.time, 0.1);
   EXPECT_EQ(read.outcome.particle, 7);
   EXPECT_TRUE(std::isnan(read.outcome.value));
+  EXPECT_EQ(read.non_finite_values, 3);
   EXPECT_EQ(read.time_step, written.time_step);
   EXPECT_EQ(read.end_time, written.end_time);
   EXPECT_EQ(read.unbalanced_force_ratio, infinity);
