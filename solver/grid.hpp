@@ -1,33 +1,21 @@
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
-#include <vector>
 
 #include "solver/scene.hpp"
 #include "solver/tensor.hpp"
 
 namespace mpm {
 
-/// What particles add to a node. One node is one aligned vector, so that adding to it is one load and one
-/// store.
-template <int Dim, class Real>
-struct alignas((Dim == 1 ? 4 : 8) * sizeof(Real)) NodeSums {
-  Real mass{};                   ///< [kg per unit of the absent dimensions]
-  Vector<Dim, Real> momentum{};  ///< [kg m/s]
-  Vector<Dim, Real> force{};     ///< [N]: internal while scattering, unbalanced once gravity is in
-};
-
-/// What particles read from a node.
-template <int Dim, class Real>
-struct alignas(2 * Dim * sizeof(Real)) NodeMotion {
-  Vector<Dim, Real> velocity{};      ///< [m/s]
-  Vector<Dim, Real> acceleration{};  ///< [m/s^2]
+/// A stretch of rows of nodes [begin, end).
+struct Rows {
+  std::int32_t begin = 0, end = 0;
 };
 
 /// A regular grid with `ghost_layers` of nodes beyond every edge, which the domains of particles near an edge
-/// reach.
+/// reach. One array per scalar, nodes along x one after another, so that the same node of neighbouring cells
+/// are neighbours in memory; in one dimension there is one row.
 template <int Dim, class Real>
 class Grid {
  public:
@@ -41,19 +29,31 @@ class Grid {
   Real origin(int axis) const { return origin_[static_cast<std::size_t>(axis)]; }
   /// Nodes along an axis, ghosts included.
   std::int32_t nodes(int axis) const { return nodes_[static_cast<std::size_t>(axis)]; }
-  /// Distance between rows in the node arrays; 0 in one dimension.
-  std::int32_t row_stride() const { return Dim == 1 ? 0 : nodes_[0]; }
+  std::int32_t rows() const { return Dim == 1 ? 1 : nodes_[Dim - 1]; }
+  /// Distance between rows in the arrays. It leaves room beyond the last node for lanes that reach past it.
+  std::int32_t row_stride() const { return row_stride_; }
+  /// Where the stretch of `rows` lies in the arrays: first index and count.
+  std::pair<Eigen::Index, Eigen::Index> place_of(Rows rows) const {
+    return {Eigen::Index(rows.begin) * row_stride_, Eigen::Index(rows.end - rows.begin) * row_stride_};
+  }
 
-  std::vector<NodeSums<Dim, Real>> sums;
-  std::vector<NodeMotion<Dim, Real>> motion;
+  // What particles add to nodes.
+  Field<Real> mass;                       ///< [kg per unit of the absent dimensions]
+  std::array<Field<Real>, Dim> momentum;  ///< [kg m/s]
+  std::array<Field<Real>, Dim> force;     ///< [N]: internal while scattering, unbalanced once gravity is in
+  // What particles read from nodes.
+  std::array<Field<Real>, Dim> velocity;      ///< [m/s]
+  std::array<Field<Real>, Dim> acceleration;  ///< [m/s^2]
 
-  /// Forgets what was scattered.
-  void clear() { std::fill(sums.begin(), sums.end(), NodeSums<Dim, Real>{}); }
+  /// Forgets what was scattered to some rows.
+  void clear(Rows rows);
+  void clear_momentum(Rows rows);
 
  private:
   Real cell_size_{}, cells_per_length_{};
   Vector<Dim, Real> origin_{};
   std::array<std::int32_t, Dim> nodes_{};
+  std::int32_t row_stride_ = 0;
 };
 
 }  // namespace mpm

@@ -2,8 +2,10 @@
 
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "solver/grid.hpp"
+#include "solver/lanes.hpp"
 
 namespace mpm {
 
@@ -21,61 +23,77 @@ class EdgeConditions {
       for (int side = 0; side < 2; ++side) {
         const Condition condition =
             scene.edges[static_cast<std::size_t>(axis)][static_cast<std::size_t>(side)];
-        if (condition == Condition::free) continue;
-        constrain(grid, axis, side, condition == Condition::fixed);
+        if (condition != Condition::free) constrain(grid, axis, side, condition == Condition::fixed);
       }
     }
   }
 
-  /// Removes momentum and force of the constrained components.
-  void apply(Grid<Dim, Real>& grid) const {
+  /// Removes momentum and force of the constrained components in some rows.
+  void apply(Grid<Dim, Real>& grid, Rows rows) const {
     for (const Constraint& constraint : constraints_) {
-      NodeSums<Dim, Real>& node = grid.sums[constraint.node];
-      node.momentum[constraint.axis] = 0;
-      node.force[constraint.axis] = 0;
+      const std::int32_t last = std::min(rows.end, constraint.rows.end);
+      for (std::int32_t row = std::max(rows.begin, constraint.rows.begin); row < last; ++row) {
+        const Eigen::Index first = Eigen::Index(row) * grid.row_stride() + constraint.first;
+        grid.momentum[constraint.component].segment(first, constraint.count).setZero();
+        grid.force[constraint.component].segment(first, constraint.count).setZero();
+      }
     }
   }
 
  private:
+  /// One component at `count` nodes from `first` on, in each of some rows.
   struct Constraint {
-    std::uint32_t node;
-    std::uint32_t axis;
+    std::size_t component;
+    Rows rows;
+    Eigen::Index first, count;
   };
 
   void constrain(const Grid<Dim, Real>& grid, int axis, int side, bool all_components) {
     const std::int32_t depth = Grid<Dim, Real>::ghost_layers + 1;
     const std::int32_t begin = side == 0 ? 0 : grid.nodes(axis) - depth;
-    const std::int32_t across = Dim == 1 ? 1 : grid.nodes(1 - axis);
-    for (std::int32_t along = begin; along < begin + depth; ++along) {
-      for (std::int32_t k = 0; k < across; ++k) {
-        const std::int32_t node = Dim == 1    ? along
-                                  : axis == 0 ? along + k * grid.row_stride()
-                                              : k + along * grid.row_stride();
-        for (int component = 0; component < Dim; ++component) {
-          if (component != axis && !all_components) continue;
-          constraints_.push_back({static_cast<std::uint32_t>(node), static_cast<std::uint32_t>(component)});
-        }
+    for (int component = 0; component < Dim; ++component) {
+      if (component != axis && !all_components) continue;
+      Constraint constraint{static_cast<std::size_t>(component), {0, grid.rows()}, 0, grid.nodes(0)};
+      if (axis == 0) {
+        constraint.first = begin;
+        constraint.count = depth;
+      } else {
+        constraint.rows = {begin, begin + depth};
       }
+      constraints_.push_back(constraint);
     }
   }
 
   std::vector<Constraint> constraints_;
 };
 
+/// Calls `visit(first node)` for lanes of nodes that cover some rows.
+template <int Dim, class Real, class Visit>
+void for_each_lanes_of_nodes(const Grid<Dim, Real>& grid, Rows rows, Visit&& visit) {
+  const auto [first, count] = grid.place_of(rows);
+  for (Eigen::Index i = first; i < first + count; i += lane_count<Real>) visit(i);
+}
+
 /// Nodal velocity from momentum [Kiriyama15, Eq. 9]; zero at empty nodes.
 template <int Dim, class Real>
-void set_velocity(Grid<Dim, Real>& grid, Real empty_mass) {
-  for (std::size_t i = 0; i < grid.sums.size(); ++i) {
-    const Real over_mass = grid.sums[i].mass > empty_mass ? 1 / grid.sums[i].mass : Real(0);
-    for (std::size_t a = 0; a < Dim; ++a) grid.motion[i].velocity[a] = grid.sums[i].momentum[a] * over_mass;
-  }
+void set_velocity(Grid<Dim, Real>& grid, Real empty_mass, Rows rows) {
+  using Value = Lanes<Real>;
+  for_each_lanes_of_nodes(grid, rows, [&](Eigen::Index i) {
+    const Value mass = load<Value>(&grid.mass[i]);
+    const auto counts = mass > Value(empty_mass);
+    const Value over_mass = select(counts, 1 / select(counts, mass, Value(1)), Value(0));
+    for (std::size_t a = 0; a < Dim; ++a) {
+      store(load<Value>(&grid.momentum[a][i]) * over_mass, &grid.velocity[a][i]);
+    }
+  });
 }
 
 /// Adds gravity to the nodal force [Kiriyama15, Eq. 3], so that it becomes the unbalanced force.
 template <int Dim, class Real>
-void add_gravity(Grid<Dim, Real>& grid, const Vector<Dim, Real>& gravity) {
-  for (NodeSums<Dim, Real>& node : grid.sums) {
-    for (std::size_t a = 0; a < Dim; ++a) node.force[a] += node.mass * gravity[a];
+void add_gravity(Grid<Dim, Real>& grid, const Vector<Dim, Real>& gravity, Rows rows) {
+  const auto [first, count] = grid.place_of(rows);
+  for (std::size_t a = 0; a < Dim; ++a) {
+    if (gravity[a] != 0) grid.force[a].segment(first, count) += gravity[a] * grid.mass.segment(first, count);
   }
 }
 
@@ -84,23 +102,26 @@ void add_gravity(Grid<Dim, Real>& grid, const Vector<Dim, Real>& gravity) {
 /// The motion is that of the undamped step, not of its start: with the old velocity a node that the step
 /// turns round is pushed on instead of held back, and alternates about zero for ever.
 template <bool damped, int Dim, class Real>
-void accelerate(Grid<Dim, Real>& grid, Real time_step, Real damping, Real empty_mass) {
-  for (std::size_t i = 0; i < grid.sums.size(); ++i) {
-    const NodeSums<Dim, Real>& node = grid.sums[i];
-    NodeMotion<Dim, Real>& motion = grid.motion[i];
-    const Real over_mass = node.mass > empty_mass ? 1 / node.mass : Real(0);
+void accelerate(Grid<Dim, Real>& grid, Real time_step, Real damping, Real empty_mass, Rows rows) {
+  using Value = Lanes<Real>;
+  for_each_lanes_of_nodes(grid, rows, [&](Eigen::Index i) {
+    const Value mass = load<Value>(&grid.mass[i]);
+    const auto counts = mass > Value(empty_mass);
+    const Value over_mass = select(counts, 1 / select(counts, mass, Value(1)), Value(0));
     for (std::size_t a = 0; a < Dim; ++a) {
-      const Real velocity = node.momentum[a] * over_mass;
-      Real force = node.force[a];
+      const Value velocity = load<Value>(&grid.momentum[a][i]) * over_mass;
+      Value force = load<Value>(&grid.force[a][i]);
       if constexpr (damped) {
-        const Real undamped = velocity + time_step * force * over_mass;
-        const Real against = undamped > 0 ? Real(-1) : undamped < 0 ? Real(1) : Real(0);
-        force += against * damping * std::abs(force);
+        const Value undamped = velocity + time_step * force * over_mass;
+        const Value against =
+            select(undamped > Value(0), Value(-1), select(undamped < Value(0), Value(1), Value(0)));
+        force = force + against * damping * abs(force);
       }
-      motion.acceleration[a] = force * over_mass;
-      motion.velocity[a] = velocity + time_step * motion.acceleration[a];
+      const Value acceleration = force * over_mass;
+      store(acceleration, &grid.acceleration[a][i]);
+      store(velocity + time_step * acceleration, &grid.velocity[a][i]);
     }
-  }
+  });
 }
 
 }  // namespace mpm

@@ -20,10 +20,11 @@ class LinearElasticLaw {
   }
 
   /// Cauchy stress [Pa] after a strain increment [-].
-  SymmetricTensor<Dim, Real> update(SymmetricTensor<Dim, Real> stress,
-                                    const SymmetricTensor<Dim, Real>& strain_increment,
-                                    Real /*volume_ratio*/) const {
-    const Real mean = lame_ * trace<Dim, Real>(strain_increment);
+  template <class Value>
+  SymmetricTensor<Dim, Value> update(SymmetricTensor<Dim, Value> stress,
+                                     const SymmetricTensor<Dim, Value>& strain_increment,
+                                     const Value& /*volume_ratio*/) const {
+    const Value mean = lame_ * trace<Dim, Value>(strain_increment);
     for (std::size_t c = 0; c < stress.size(); ++c) stress[c] += twice_shear_ * strain_increment[c];
     for (std::size_t c = 0; c < std::min<std::size_t>(3, stress.size()); ++c) stress[c] += mean;
     return stress;

@@ -12,7 +12,7 @@ namespace mpm {
 template <int Dim, class Real>
 class Loading {
  public:
-  /// Gives the particles of a driven motion their initial velocities.
+  /// Gives the particles, in the order of their filling, the initial velocities of a driven motion.
   Loading(const Scene& scene, double time_step, Particles<Dim, Real>& particles) : scene_(scene) {
     for (const SurfaceLoad& load : scene.surface_loads) find_row(load, particles);
     if (!scene.driven_motion) return;
@@ -20,10 +20,10 @@ class Loading {
       const Lattice lattice = lattice_of(scene, body);
       start_.insert(start_.end(), lattice.centers.begin(), lattice.centers.end());
     }
-    for (Eigen::Index p = 0; p < particles.count(); ++p) {
-      const PerAxis velocity =
-          scene.driven_motion->velocity(start_[static_cast<std::size_t>(p)], -time_step / 2);
-      for (std::size_t a = 0; a < Dim; ++a) particles.velocity[a][p] = static_cast<Real>(velocity[a]);
+    for (std::size_t p = 0; p < start_.size(); ++p) {
+      const PerAxis velocity = scene.driven_motion->velocity(start_[p], -time_step / 2);
+      const Eigen::Index slot = particles.slot_of[p];
+      for (std::size_t a = 0; a < Dim; ++a) particles.velocity[a][slot] = static_cast<Real>(velocity[a]);
     }
   }
 
@@ -33,10 +33,11 @@ class Loading {
   /// Sets the external forces acting at `time` [s].
   void set_forces(double time, Particles<Dim, Real>& particles) const {
     if (scene_.driven_motion) {
-      for (Eigen::Index p = 0; p < particles.count(); ++p) {
-        const PerAxis force = scene_.driven_motion->body_force(start_[static_cast<std::size_t>(p)], time);
+      for (std::size_t p = 0; p < start_.size(); ++p) {
+        const PerAxis force = scene_.driven_motion->body_force(start_[p], time);
+        const Eigen::Index slot = particles.slot_of[p];
         for (std::size_t a = 0; a < Dim; ++a) {
-          particles.external_force[a][p] = particles.mass[p] * static_cast<Real>(force[a]);
+          particles.external_force[a][slot] = particles.mass[slot] * static_cast<Real>(force[a]);
         }
       }
     } else {
@@ -44,9 +45,10 @@ class Loading {
     }
     for (const Row& row : rows_) {
       const double fraction = row.ramp > 0 ? std::min(time / row.ramp, 1.0) : 1.0;
-      for (const Eigen::Index p : row.particles) {
+      for (const std::size_t p : row.particles) {
+        const Eigen::Index slot = particles.slot_of[p];
         for (std::size_t a = 0; a < Dim; ++a) {
-          particles.external_force[a][p] += static_cast<Real>(fraction * row.force[a]);
+          particles.external_force[a][slot] += static_cast<Real>(fraction * row.force[a]);
         }
       }
     }
@@ -59,8 +61,9 @@ class Loading {
       if (!body.density_ramp || time < body.density_ramp->start) continue;
       const auto density = static_cast<Real>(body.density_at(time));
       const ParticleRange range = particles.bodies[b];
-      for (Eigen::Index p = range.first; p < range.last; ++p) {
-        particles.mass[p] = density * particles.initial_volume[p];
+      for (Eigen::Index slot = range.first; slot < range.last; ++slot) {
+        if (particles.id[static_cast<std::size_t>(slot)] < 0) continue;
+        particles.mass[slot] = density * particles.initial_volume[slot];
       }
     }
   }
@@ -68,7 +71,7 @@ class Loading {
  private:
   /// Particles that carry a surface load, and the force on each once it acts in full [N].
   struct Row {
-    std::vector<Eigen::Index> particles;
+    std::vector<std::size_t> particles;
     PerAxis force{};
     double ramp = 0.0;
   };
@@ -80,23 +83,22 @@ class Loading {
         scene_.bodies.begin());
     const Lattice lattice = lattice_of(scene_, scene_.bodies[body]);
     Row row{rows_of(load, scene_.bodies[body], lattice), load.traction, load.ramp};
-    for (Eigen::Index& p : row.particles) p += particles.bodies[body].first;
+    for (std::size_t& p : row.particles) p += static_cast<std::size_t>(particles.bodies[body].first);
     const double area = Dim == 1 ? 1.0 : lattice.spacing[static_cast<std::size_t>(1 - load.axis)];
     for (double& component : row.force) component *= area;
     rows_.push_back(std::move(row));
   }
 
   /// Indices within the body.
-  static std::vector<Eigen::Index> rows_of(const SurfaceLoad& load, const Body& body,
-                                           const Lattice& lattice) {
+  static std::vector<std::size_t> rows_of(const SurfaceLoad& load, const Body& body, const Lattice& lattice) {
     const auto normal = static_cast<std::size_t>(load.axis), along = 1 - normal;
     const double edge = load.side == 0 ? body.lower[normal] : body.upper[normal];
-    std::vector<Eigen::Index> found;
+    std::vector<std::size_t> found;
     for (std::size_t k = 0; k < lattice.centers.size(); ++k) {
       const PerAxis& center = lattice.centers[k];
       if (std::abs(center[normal] - edge) > lattice.spacing[normal]) continue;
       if (Dim == 2 && (center[along] < load.begin || center[along] > load.end)) continue;
-      found.push_back(static_cast<Eigen::Index>(k));
+      found.push_back(k);
     }
     return found;
   }

@@ -2,6 +2,7 @@
 
 #include <variant>
 
+#include "solver/lanes.hpp"
 #include "solver/linear_elastic.hpp"
 #include "solver/mohr_coulomb.hpp"
 #include "solver/neo_hookean.hpp"
@@ -32,52 +33,84 @@ typename Laws<Dim, Real>::Any law_of(const Material& material) {
   return LinearElasticLaw<Dim, Real>(std::get<LinearElastic>(material));
 }
 
-/// Turns the stress of all particles by the step's rotation: the Jaumann rate, integrated exactly for a
-/// constant spin.
-template <class Real>
-void rotate_stress(Particles<2, Real>& particles) {
-  for (Eigen::Index p = 0; p < particles.count(); ++p) {
-    SymmetricTensor<2, Real> stress;
-    for (std::size_t c = 0; c < stress.size(); ++c) stress[c] = particles.stress[c][p];
-    stress = rotated(stress, particles.rotation[p]);
-    for (std::size_t c = 0; c < stress.size(); ++c) particles.stress[c][p] = stress[c];
+/// What the velocity gradient does to a particle, or lanes of them, in one step.
+template <int Dim, class Value>
+struct Deformation {
+  SymmetricTensor<Dim, Value> strain_increment;  ///< [-]
+  Value rotation;                                ///< in the plane, anticlockwise [rad]
+};
+
+/// Deformation over a time step [Kiriyama15, Eq. 10a]; the rotation is half the curl times the time step.
+template <int Dim, class Value>
+Deformation<Dim, Value> deformation_of(const std::array<Vector<Dim, Value>, Dim>& velocity_gradient,
+                                       const Value& time_step) {
+  Deformation<Dim, Value> deformation{symmetric_part<Dim, Value>(velocity_gradient), Value(0)};
+  for (Value& component : deformation.strain_increment) component = time_step * component;
+  if constexpr (Dim == 2) {
+    deformation.rotation = time_step * (velocity_gradient[1][0] - velocity_gradient[0][1]) / 2;
   }
+  return deformation;
 }
 
-/// Volume, then stress of a body's particles from their strain increments [Kiriyama15, Eqs. 11 and 12].
-template <int Dim, class Real, class Law>
-void update_stress(const Law& law, ParticleRange range, Particles<Dim, Real>& particles) {
-  constexpr std::size_t components = Particles<Dim, Real>::components;
-  for (Eigen::Index p = range.first; p < range.last; ++p) {
-    SymmetricTensor<Dim, Real> stress, increment;
-    for (std::size_t c = 0; c < components; ++c) {
-      stress[c] = particles.stress[c][p];
-      increment[c] = particles.strain_increment[c][p];
+/// Updates particles whose bodies follow one law, lanes of them at a time.
+template <int Dim, class Real>
+class StressUpdate {
+ public:
+  using Value = Lanes<Real>;
+  using Points = Particles<Dim, Real>;
+  static constexpr std::size_t components = Points::components;
+
+  /// `turns_stress`: by the Jaumann rate.
+  StressUpdate(bool sums_strain, bool turns_stress)
+      : sums_strain_(sums_strain), turns_stress_(turns_stress) {}
+
+  /// Volume, then stress of the particles in lanes of slots [Kiriyama15, Eqs. 11 and 12]. The Jaumann rate is
+  /// integrated exactly for a constant spin: the stress is turned by the step's rotation.
+  template <class Law>
+  void operator()(const Law& law, const Deformation<Dim, Value>& deformation, Eigen::Index slot,
+                  Points& particles) const {
+    SymmetricTensor<Dim, Value> stress;
+    for (std::size_t c = 0; c < components; ++c) stress[c] = load<Value>(&particles.stress[c][slot]);
+    if constexpr (Dim == 2) {
+      if (turns_stress_) stress = rotated(stress, deformation.rotation);
     }
-    particles.volume[p] *= 1 + trace<Dim, Real>(increment);
-    stress = law.update(stress, increment, particles.volume[p] / particles.initial_volume[p]);
-    for (std::size_t c = 0; c < components; ++c) particles.stress[c][p] = stress[c];
+    sum_strain(deformation, slot, particles);
+    const auto& increment = deformation.strain_increment;
+    const Value volume = load<Value>(&particles.volume[slot]) * (1 + trace<Dim, Value>(increment));
+    store(volume, &particles.volume[slot]);
+    stress = law.update(stress, increment, volume / load<Value>(&particles.initial_volume[slot]));
+    for (std::size_t c = 0; c < components; ++c) store(stress[c], &particles.stress[c][slot]);
   }
-}
 
-/// Deformation gradient, volume and stress of a neo-Hookean body's particles from their strain increments and
-/// rotations: F grows by (I + L dt) F, exact for particles that move with their velocity gradient L.
-template <class Real>
-void update_stress(const NeoHookeanLaw<2, Real>& law, ParticleRange range, Particles<2, Real>& particles) {
-  auto& gradient = particles.deformation_gradient;
-  for (Eigen::Index p = range.first; p < range.last; ++p) {
-    const Real xx = 1 + particles.strain_increment[0][p], yy = 1 + particles.strain_increment[1][p];
-    const Real xy = particles.strain_increment[3][p] - particles.rotation[p];
-    const Real yx = particles.strain_increment[3][p] + particles.rotation[p];
-    const std::array<Real, 4> old{gradient[0][p], gradient[1][p], gradient[2][p], gradient[3][p]};
-    const std::array<Real, 4> f{xx * old[0] + xy * old[2], xx * old[1] + xy * old[3],
-                                yx * old[0] + yy * old[2], yx * old[1] + yy * old[3]};
-    const Real volume_ratio = f[0] * f[3] - f[1] * f[2];
-    for (std::size_t k = 0; k < f.size(); ++k) gradient[k][p] = f[k];
-    particles.volume[p] = volume_ratio * particles.initial_volume[p];
-    const SymmetricTensor<2, Real> stress = law.stress(f, volume_ratio);
-    for (std::size_t c = 0; c < stress.size(); ++c) particles.stress[c][p] = stress[c];
+  /// Deformation gradient, volume and stress of a neo-Hookean body's particles: F grows by (I + L dt) F,
+  /// exact for particles that move with their velocity gradient L.
+  void operator()(const NeoHookeanLaw<2, Real>& law, const Deformation<2, Value>& deformation,
+                  Eigen::Index slot, Points& particles) const requires(Dim == 2) {
+    const auto& increment = deformation.strain_increment;
+    const Value xx = 1 + increment[0], yy = 1 + increment[1];
+    const Value xy = increment[3] - deformation.rotation, yx = increment[3] + deformation.rotation;
+    std::array<Value, 4> old;
+    for (std::size_t k = 0; k < 4; ++k) old[k] = load<Value>(&particles.deformation_gradient[k][slot]);
+    const std::array<Value, 4> f{xx * old[0] + xy * old[2], xx * old[1] + xy * old[3],
+                                 yx * old[0] + yy * old[2], yx * old[1] + yy * old[3]};
+    const Value volume_ratio = f[0] * f[3] - f[1] * f[2];
+    for (std::size_t k = 0; k < 4; ++k) store(f[k], &particles.deformation_gradient[k][slot]);
+    sum_strain(deformation, slot, particles);
+    store(volume_ratio * load<Value>(&particles.initial_volume[slot]), &particles.volume[slot]);
+    const SymmetricTensor<2, Value> stress = law.stress(f, volume_ratio);
+    for (std::size_t c = 0; c < components; ++c) store(stress[c], &particles.stress[c][slot]);
   }
-}
+
+ private:
+  void sum_strain(const Deformation<Dim, Value>& deformation, Eigen::Index slot, Points& particles) const {
+    if (!sums_strain_) return;
+    for (std::size_t c = 0; c < components; ++c) {
+      Real* const strain = &particles.strain[c][slot];
+      store(load<Value>(strain) + deformation.strain_increment[c], strain);
+    }
+  }
+
+  bool sums_strain_, turns_stress_;
+};
 
 }  // namespace mpm

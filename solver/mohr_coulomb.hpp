@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "solver/lanes.hpp"
 #include "solver/linear_elastic.hpp"
 #include "solver/scene.hpp"
 #include "solver/tensor.hpp"
@@ -12,32 +13,34 @@
 namespace mpm {
 
 /// Principal stresses [Pa], tension positive, largest >= middle >= smallest.
-template <class Real>
+template <class Value>
 struct PrincipalStresses {
-  Real largest, middle, smallest;
+  Value largest, middle, smallest;
 };
 
 /// Mohr's circle of the stresses in the plane [Pa]. The stress components lie `half_difference` and the shear
 /// stress off its center, so their ratios to `radius` are cosine and sine of twice the principal direction's
 /// angle.
-template <class Real>
+template <class Value>
 struct MohrCircle {
-  Real center, half_difference, radius;
+  Value center, half_difference, radius;
 };
 
 /// Circle of the components xx, yy and xy of a stress [Pa].
-template <class Real>
-MohrCircle<Real> mohr_circle(const SymmetricTensor<2, Real>& stress) {
-  const Real half_difference = (stress[0] - stress[1]) / 2;
+template <class Value>
+MohrCircle<Value> mohr_circle(const SymmetricTensor<2, Value>& stress) {
+  using std::sqrt;
+  const Value half_difference = (stress[0] - stress[1]) / 2;
   return {(stress[0] + stress[1]) / 2, half_difference,
-          std::sqrt(half_difference * half_difference + stress[3] * stress[3])};
+          sqrt(half_difference * half_difference + stress[3] * stress[3])};
 }
 
 /// The two principal stresses in the plane and the one across it, `zz` [Pa], in order.
-template <class Real>
-PrincipalStresses<Real> principal_stresses(const MohrCircle<Real>& circle, Real zz) {
-  const Real major = circle.center + circle.radius, minor = circle.center - circle.radius;
-  return {std::max(major, zz), std::max(minor, std::min(major, zz)), std::min(minor, zz)};
+template <class Value>
+PrincipalStresses<Value> principal_stresses(const MohrCircle<Value>& circle, const Value& zz) {
+  using std::max, std::min;
+  const Value major = circle.center + circle.radius, minor = circle.center - circle.radius;
+  return {max(major, zz), max(minor, min(major, zz)), min(minor, zz)};
 }
 
 /// f = (s1 - s3) + (s1 + s3) sin phi - 2 c cos phi [Pa], negative inside the elastic domain [deSouzaNeto08,
@@ -63,10 +66,9 @@ Real yield_function(const MohrCoulomb& material, const SymmetricTensor<2, Real>&
 /// gradient that expands, and the apex takes the expansion besides. Plastic work is never negative, for any
 /// psi in [0, phi].
 ///
-/// All regions are computed and one is selected, without a branch; a loop over particles runs in vector
-/// instructions where the compiler need not keep errno for the square root (-fno-math-errno). Squares of the
-/// stress in the plane must be normal numbers: in single precision the law holds for stresses from 1e-18 to
-/// 1e18 Pa, and at zero.
+/// All regions are computed and one is selected, without a branch, so that lanes of particles can be returned
+/// at once; where none of them yields, the return is left out. Squares of the stress in the plane must be
+/// normal numbers: in single precision the law holds for stresses from 1e-18 to 1e18 Pa, and at zero.
 template <class Real>
 class MohrCoulombLaw {
  public:
@@ -80,14 +82,17 @@ class MohrCoulombLaw {
 
   /// Cauchy stress [Pa] after a strain increment [-]: the elastic one, bit for bit, where that is within the
   /// limit.
-  SymmetricTensor<2, Real> update(const SymmetricTensor<2, Real>& stress,
-                                  const SymmetricTensor<2, Real>& strain_increment, Real volume_ratio) const;
+  template <class Value>
+  SymmetricTensor<2, Value> update(const SymmetricTensor<2, Value>& stress,
+                                   const SymmetricTensor<2, Value>& strain_increment,
+                                   const Value& volume_ratio) const;
 
   /// Modulus of the fastest elastic wave [Pa].
   double wave_modulus() const { return elastic_.wave_modulus(); }
 
  private:
-  PrincipalStresses<Real> returned(const PrincipalStresses<Real>& trial, Real excess) const;
+  template <class Value>
+  PrincipalStresses<Value> returned(const PrincipalStresses<Value>& trial, const Value& excess) const;
 
   LinearElasticLaw<2, Real> elastic_;
   Real strength_ratio_, tensile_strength_, apex_;                         // k, t, c cot phi
@@ -123,29 +128,33 @@ MohrCoulombLaw<Real>::MohrCoulombLaw(const MohrCoulomb& material)
 }
 
 template <class Real>
-SymmetricTensor<2, Real> MohrCoulombLaw<Real>::update(const SymmetricTensor<2, Real>& stress,
-                                                      const SymmetricTensor<2, Real>& strain_increment,
-                                                      Real volume_ratio) const {
-  const SymmetricTensor<2, Real> elastic = elastic_.update(stress, strain_increment, volume_ratio);
-  const Real zz = elastic[2];
-  const MohrCircle<Real> circle = mohr_circle(elastic);
-  const PrincipalStresses<Real> trial = principal_stresses(circle, zz);
-  const Real excess = trial.largest - strength_ratio_ * trial.smallest - tensile_strength_;
-  const Real scale = std::max(trial.largest, -trial.smallest) + tensile_strength_;
-  const bool yields = excess > round_off * scale;
+template <class Value>
+SymmetricTensor<2, Value> MohrCoulombLaw<Real>::update(const SymmetricTensor<2, Value>& stress,
+                                                       const SymmetricTensor<2, Value>& strain_increment,
+                                                       const Value& volume_ratio) const {
+  using std::max;
+  const SymmetricTensor<2, Value> elastic = elastic_.update(stress, strain_increment, volume_ratio);
+  const Value zz = elastic[2];
+  const MohrCircle<Value> circle = mohr_circle(elastic);
+  const PrincipalStresses<Value> trial = principal_stresses(circle, zz);
+  const Value excess = trial.largest - strength_ratio_ * trial.smallest - tensile_strength_;
+  const Value scale = max(trial.largest, -trial.smallest) + tensile_strength_;
+  const auto yields = excess > round_off * scale;
+  if (!any(yields)) return elastic;
 
   // The principal directions stay, so the components shrink towards the center with the circle.
-  const PrincipalStresses<Real> limit = returned(trial, excess);
-  const bool zz_is_largest = zz > circle.center + circle.radius;
-  const bool zz_is_smallest = zz < circle.center - circle.radius;
-  const Real major = zz_is_largest ? limit.middle : limit.largest;
-  const Real minor = zz_is_smallest ? limit.middle : limit.smallest;
-  const Real across = zz_is_largest ? limit.largest : zz_is_smallest ? limit.smallest : limit.middle;
-  const Real center = (major + minor) / 2;
-  const Real shrinkage = (major - minor) / 2 / (circle.radius > 0 ? circle.radius : Real(1));
-  const Real deviation = circle.half_difference * shrinkage;
-  return {yields ? center + deviation : elastic[0], yields ? center - deviation : elastic[1],
-          yields ? across : elastic[2], yields ? elastic[3] * shrinkage : elastic[3]};
+  const PrincipalStresses<Value> limit = returned(trial, excess);
+  const auto zz_is_largest = zz > circle.center + circle.radius;
+  const auto zz_is_smallest = zz < circle.center - circle.radius;
+  const Value major = select(zz_is_largest, limit.middle, limit.largest);
+  const Value minor = select(zz_is_smallest, limit.middle, limit.smallest);
+  const Value across =
+      select(zz_is_largest, limit.largest, select(zz_is_smallest, limit.smallest, limit.middle));
+  const Value center = (major + minor) / 2;
+  const Value shrinkage = (major - minor) / 2 / select(circle.radius > Value(0), circle.radius, Value(1));
+  const Value deviation = circle.half_difference * shrinkage;
+  return {select(yields, center + deviation, elastic[0]), select(yields, center - deviation, elastic[1]),
+          select(yields, across, elastic[2]), select(yields, elastic[3] * shrinkage, elastic[3])};
 }
 
 /// Return of a trial stress s whose f is `excess` > 0 [deSouzaNeto08, ch. 8]; s2' matters on the face only:
@@ -163,26 +172,30 @@ SymmetricTensor<2, Real> MohrCoulombLaw<Real>::update(const SymmetricTensor<2, R
 /// face has s1' < s2' < s3' then, above the apex, and neither edge's flow turns that far, for any k <= m <= 1
 /// and q >= 0.
 template <class Real>
-PrincipalStresses<Real> MohrCoulombLaw<Real>::returned(const PrincipalStresses<Real>& trial,
-                                                       Real excess) const {
-  const auto [s1, s2, s3] = trial;
-  const Real face_flow = excess * face_compliance_;
-  const Real compression_flow = (2 * excess - (s1 - s2)) * compression_compliance_;
-  const Real extension_flow = (2 * excess - strength_ratio_ * (s2 - s3)) * extension_compliance_;
-  const Real on_face = s3 + (flow_ratio_ - lateral_flow_) * face_flow;
-  const Real on_compression_edge = s3 + (flow_ratio_ - lateral_flow_) * compression_flow;
-  const Real on_extension_edge = (s2 + s3 + (flow_ratio_ - 2 * lateral_flow_) * extension_flow) / 2;
+template <class Value>
+PrincipalStresses<Value> MohrCoulombLaw<Real>::returned(const PrincipalStresses<Value>& trial,
+                                                        const Value& excess) const {
+  using std::max, std::min;
+  const auto& [s1, s2, s3] = trial;
+  const Value face_flow = excess * face_compliance_;
+  const Value compression_flow = (2 * excess - (s1 - s2)) * compression_compliance_;
+  const Value extension_flow = (2 * excess - strength_ratio_ * (s2 - s3)) * extension_compliance_;
+  const Value on_face = s3 + (flow_ratio_ - lateral_flow_) * face_flow;
+  const Value on_compression_edge = s3 + (flow_ratio_ - lateral_flow_) * compression_flow;
+  const Value on_extension_edge = (s2 + s3 + (flow_ratio_ - 2 * lateral_flow_) * extension_flow) / 2;
 
-  const bool passes_compression_edge = s1 - s2 < face_flow;
-  const bool passes_extension_edge = s2 - s3 < flow_ratio_ * face_flow;
-  const Real smallest = std::min(
-      passes_compression_edge ? on_compression_edge : (passes_extension_edge ? on_extension_edge : on_face),
-      apex_);
-  const Real largest = smallest < apex_ ? strength_ratio_ * smallest + tensile_strength_ : apex_;
+  const auto passes_compression_edge = s1 - s2 < face_flow;
+  const auto passes_extension_edge = s2 - s3 < flow_ratio_ * face_flow;
+  const Value apex(apex_);
+  const Value smallest = min(select(passes_compression_edge, on_compression_edge,
+                                    select(passes_extension_edge, on_extension_edge, on_face)),
+                             apex);
+  const Value largest = select(smallest < apex, strength_ratio_ * smallest + tensile_strength_, apex);
   // Where the returned stress is small, round-off of the trial stress must not push the middle one out of
   // order.
-  const Real middle = std::max(smallest, std::min(largest, s2 - lateral_flow_ * face_flow));
-  return {largest, passes_compression_edge ? largest : (passes_extension_edge ? smallest : middle), smallest};
+  const Value middle = max(smallest, min(largest, s2 - lateral_flow_ * face_flow));
+  return {largest, select(passes_compression_edge, largest, select(passes_extension_edge, smallest, middle)),
+          smallest};
 }
 
 }  // namespace mpm

@@ -23,15 +23,19 @@ class NeoHookeanLaw {
   }
 
   /// Cauchy stress [Pa] of a stretch, which in one dimension is the volume ratio.
-  SymmetricTensor<1, Real> update(const SymmetricTensor<1, Real>&, const SymmetricTensor<1, Real>&,
-                                  Real volume_ratio) const requires(Dim == 1) {
+  template <class Value>
+  SymmetricTensor<1, Value> update(const SymmetricTensor<1, Value>&, const SymmetricTensor<1, Value>&,
+                                   const Value& volume_ratio) const requires(Dim == 1) {
     return {shear_ * (volume_ratio - 1 / volume_ratio)};
   }
 
   /// Cauchy stress [Pa] of a deformation gradient [-], rows one after another, whose determinant is
   /// `volume_ratio`.
-  SymmetricTensor<2, Real> stress(const std::array<Real, 4>& f, Real volume_ratio) const requires(Dim == 2) {
-    const Real mean = lame_ * std::log(volume_ratio), over_volume = 1 / volume_ratio;
+  template <class Value>
+  SymmetricTensor<2, Value> stress(const std::array<Value, 4>& f, const Value& volume_ratio) const
+      requires(Dim == 2) {
+    using std::log;
+    const Value mean = lame_ * log(volume_ratio), over_volume = 1 / volume_ratio;
     return {(mean + shear_ * (f[0] * f[0] + f[1] * f[1] - 1)) * over_volume,
             (mean + shear_ * (f[2] * f[2] + f[3] * f[3] - 1)) * over_volume, mean * over_volume,
             shear_ * (f[0] * f[2] + f[1] * f[3]) * over_volume};

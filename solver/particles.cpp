@@ -59,13 +59,14 @@ bool has_neo_hookean(const Scene& scene) {
 template <int Dim, class Real>
 void reserve_optional_fields(const Scene& scene, Eigen::Index total, Particles<Dim, Real>& particles) {
   const bool deforms = Dim == 2 && has_neo_hookean(scene);
-  particles.rotation.setZero(deforms || scene.objectivity == Objectivity::jaumann ? total : 0);
   resize(particles.deformation_gradient, deforms ? total : 0);
   if (deforms) {
     for (std::size_t axis = 0; axis < Dim; ++axis) particles.deformation_gradient[axis * (Dim + 1)].setOnes();
   }
   resize(particles.strain, scene.sums_strain ? total : 0);
   resize(particles.external_force, scene.driven_motion || !scene.surface_loads.empty() ? total : 0);
+  const bool grows_late = scene.update_order == UpdateOrder::usf && scene.scheme == Scheme::cpgimp;
+  resize(particles.pending, scene.update_order == UpdateOrder::musl || grows_late ? total : 0);
 }
 
 }  // namespace
@@ -103,7 +104,6 @@ Particles<Dim, Real> fill_bodies(const Scene& scene, bool with_domain) {
   resize(particles.velocity, total);
   resize(particles.half_size, with_domain ? total : 0);
   resize(particles.stress, total);
-  resize(particles.strain_increment, total);
   particles.mass.setZero(total);
   particles.volume.setZero(total);
   reserve_optional_fields(scene, total, particles);
@@ -116,6 +116,10 @@ Particles<Dim, Real> fill_bodies(const Scene& scene, bool with_domain) {
     }
   }
   particles.initial_volume = particles.volume;
+  particles.id.resize(static_cast<std::size_t>(total));
+  std::iota(particles.id.begin(), particles.id.end(), 0);
+  particles.slot_of.resize(static_cast<std::size_t>(total));
+  std::iota(particles.slot_of.begin(), particles.slot_of.end(), Eigen::Index(0));
   return particles;
 }
 

@@ -15,8 +15,9 @@ struct ParticleRange {
   Eigen::Index first = 0, last = 0;
 };
 
-/// The material points, one contiguous array per scalar, bodies one after another.
-/// Mass is the invariant; density is mass / volume [Kiriyama15, Eqs. 12 and 13].
+/// The material points, one contiguous array per scalar, bodies one after another. A particle lives in a
+/// slot; slots without one are kept harmless, see `CellBlocks`. Mass is the invariant; density is mass /
+/// volume [Kiriyama15, Eqs. 12 and 13].
 template <int Dim, class Real>
 struct Particles {
   static constexpr std::size_t components = symmetric_components<Dim>;
@@ -24,26 +25,50 @@ struct Particles {
   std::array<Field<Real>, Dim> position;  ///< [m]
   std::array<Field<Real>, Dim>
       displacement;  ///< [m], summed apart from the position so that small ones keep their digits
-  std::array<Field<Real>, Dim> velocity;                 ///< [m/s]
-  std::array<Field<Real>, Dim> half_size;                ///< [m]; empty for scheme mpm
-  std::array<Field<Real>, components> stress;            ///< Cauchy [Pa], tension positive
-  std::array<Field<Real>, components> strain_increment;  ///< of the current step [-]
-  Field<Real> rotation;  ///< of the current step, anticlockwise [rad]; empty unless a body needs it
+  std::array<Field<Real>, Dim> velocity;       ///< [m/s]
+  std::array<Field<Real>, Dim> half_size;      ///< [m]; empty for scheme mpm
+  std::array<Field<Real>, components> stress;  ///< Cauchy [Pa], tension positive
+  std::array<Field<Real>, Dim> pending;        ///< what a later pass of the same step adds; see `Transfer`
   std::array<Field<Real>, components>
       strain;  ///< sum of the increments [-]; empty unless the scene asks for it
   std::array<Field<Real>, Dim * Dim>
       deformation_gradient;  ///< row by row [-]; empty unless a neo-Hookean body in 2D needs it
   std::array<Field<Real>, Dim>
-      external_force;          ///< beside gravity [N]; empty unless the scene has such forces
-  Field<Real> mass;            ///< [kg per unit of the absent dimensions]
-  Field<Real> volume;          ///< current [m^Dim]
-  Field<Real> initial_volume;  ///< [m^Dim]
-  std::vector<ParticleRange> bodies;
+      external_force;            ///< beside gravity [N]; empty unless the scene has such forces
+  Field<Real> mass;              ///< [kg per unit of the absent dimensions]
+  Field<Real> volume;            ///< current [m^Dim]
+  Field<Real> initial_volume;    ///< [m^Dim]
+  std::vector<std::int32_t> id;  ///< of the particle in a slot, in the order of filling; -1 in an empty one
+  std::vector<Eigen::Index> slot_of;  ///< [id]
+  std::vector<ParticleRange> bodies;  ///< slots of each body
 
-  Eigen::Index count() const { return mass.size(); }
+  Eigen::Index count() const { return static_cast<Eigen::Index>(slot_of.size()); }
+  Eigen::Index slots() const { return mass.size(); }
+
+  /// Calls `visit(field, value in an empty slot)` for all fields that the scene has. Positions in empty slots
+  /// are for `CellBlocks` to set.
+  template <class Visit>
+  void for_each_field(Visit&& visit) {
+    const auto all_of = [&](auto& fields, Real empty) {
+      for (auto& field : fields) {
+        if (field.size() > 0) visit(field, empty);
+      }
+    };
+    for (auto* fields : {&position, &displacement, &velocity, &pending, &external_force})
+      all_of(*fields, Real(0));
+    all_of(half_size, half_size[0].size() > 0 ? half_size[0][0] : Real(0));
+    all_of(stress, Real(0));
+    all_of(strain, Real(0));
+    for (std::size_t k = 0; k < deformation_gradient.size(); ++k) {
+      if (deformation_gradient[k].size() > 0) visit(deformation_gradient[k], Real(k % (Dim + 1) == 0));
+    }
+    visit(mass, Real(0));
+    visit(volume, Real(1));
+    visit(initial_volume, Real(1));
+  }
 };
 
-/// Mass of all particles, summed in double precision in particle order [kg per unit of the absent
+/// Mass of all particles, summed in double precision in the order of their slots [kg per unit of the absent
 /// dimensions].
 template <int Dim, class Real>
 double total_mass(const Particles<Dim, Real>& particles) {

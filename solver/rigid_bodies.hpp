@@ -61,21 +61,21 @@ class RigidBodies {
   /// `add_gravity` and `mpm::accelerate`, so that damping acts on what is left unbalanced.
   void take_up(Grid<Dim, Real>& grid, Real empty_mass) {
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
-      const auto velocity_of_node = [&](std::size_t i, std::size_t a) {
-        const NodeSums<Dim, Real>& node = grid.sums[i];
-        return (static_cast<double>(node.momentum[a]) + static_cast<double>(node.force[a]) * time_step_) /
-               static_cast<double>(node.mass);
+      const auto velocity_of_node = [&](Eigen::Index i, std::size_t a) {
+        return (static_cast<double>(grid.momentum[a][i]) +
+                static_cast<double>(grid.force[a][i]) * time_step_) /
+               static_cast<double>(grid.mass[i]);
       };
-      const auto give = [&](std::size_t i, std::size_t a, double impulse) {
-        grid.sums[i].force[a] += static_cast<Real>(impulse / time_step_);
+      const auto give = [&](Eigen::Index i, std::size_t a, double impulse) {
+        grid.force[a][i] += static_cast<Real>(impulse / time_step_);
         impulses_[b][a] -= impulse;
       };
-      for_each_held(b, [&](std::size_t i, std::size_t a, double velocity) {
-        if (!(grid.sums[i].mass > empty_mass)) return;
-        give(i, a, static_cast<double>(grid.sums[i].mass) * (velocity - velocity_of_node(i, a)));
+      for_each_held(b, [&](Eigen::Index i, std::size_t a, double velocity) {
+        if (!(grid.mass[i] > empty_mass)) return;
+        give(i, a, static_cast<double>(grid.mass[i]) * (velocity - velocity_of_node(i, a)));
       });
       for_each_face(b, [&](const Pair& pair, std::size_t a, double velocity) {
-        if (grid.sums[pair.in].mass > empty_mass)
+        if (grid.mass[pair.in] > empty_mass)
           pull(grid, empty_mass, pair, a, velocity, velocity_of_node, give);
       });
     }
@@ -85,26 +85,25 @@ class RigidBodies {
   /// What it still changes after `mpm::accelerate` is what damping took, and no reaction.
   void set_motion(Grid<Dim, Real>& grid, Real empty_mass) const {
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
-      const auto velocity_of_node = [&](std::size_t i, std::size_t a) {
-        return static_cast<double>(grid.motion[i].velocity[a]);
+      const auto velocity_of_node = [&](Eigen::Index i, std::size_t a) {
+        return static_cast<double>(grid.velocity[a][i]);
       };
-      const auto give = [&](std::size_t i, std::size_t a, double impulse) {
-        const double change = impulse / static_cast<double>(grid.sums[i].mass);
-        grid.motion[i].velocity[a] += static_cast<Real>(change);
-        grid.motion[i].acceleration[a] += static_cast<Real>(change / time_step_);
+      const auto give = [&](Eigen::Index i, std::size_t a, double impulse) {
+        const double change = impulse / static_cast<double>(grid.mass[i]);
+        grid.velocity[a][i] += static_cast<Real>(change);
+        grid.acceleration[a][i] += static_cast<Real>(change / time_step_);
       };
-      for_each_held(b, [&](std::size_t i, std::size_t a, double velocity) {
-        if (grid.sums[i].mass > empty_mass) {
-          grid.motion[i].acceleration[a] +=
-              static_cast<Real>((velocity - velocity_of_node(i, a)) / time_step_);
+      for_each_held(b, [&](Eigen::Index i, std::size_t a, double velocity) {
+        if (grid.mass[i] > empty_mass) {
+          grid.acceleration[a][i] += static_cast<Real>((velocity - velocity_of_node(i, a)) / time_step_);
         }
-        grid.motion[i].velocity[a] = static_cast<Real>(velocity);
+        grid.velocity[a][i] = static_cast<Real>(velocity);
       });
       for_each_face(b, [&](const Pair& pair, std::size_t a, double velocity) {
-        if (grid.sums[pair.in].mass > empty_mass) {
+        if (grid.mass[pair.in] > empty_mass) {
           pull(grid, empty_mass, pair, a, velocity, velocity_of_node, give);
         } else {  // it costs nothing to move
-          grid.motion[pair.in].velocity[a] =
+          grid.velocity[a][pair.in] =
               static_cast<Real>((velocity - (1 - pair.weight) * velocity_of_node(pair.out, a)) / pair.weight);
         }
       });
@@ -164,9 +163,7 @@ class RigidBodies {
     return {axis, inside, outside, std::abs(place - outside)};
   }
 
-  std::size_t node_at(std::int32_t i, std::int32_t j) const {
-    return static_cast<std::size_t>(i) + static_cast<std::size_t>(j) * static_cast<std::size_t>(row_stride_);
-  }
+  Eigen::Index node_at(std::int32_t i, std::int32_t j) const { return i + Eigen::Index(j) * row_stride_; }
 
   /// Calls `visit(node, component, velocity)` for the nodes inside body `b`.
   template <class Visit>
@@ -185,7 +182,7 @@ class RigidBodies {
 
   /// Two nodes with a face between them.
   struct Pair {
-    std::size_t in, out;
+    Eigen::Index in, out;
     double weight;  ///< of `in` on the face
   };
 
@@ -215,12 +212,12 @@ class RigidBodies {
   static void pull(const Grid<Dim, Real>& grid, Real empty_mass, const Pair& pair, std::size_t a,
                    double velocity, Velocity&& velocity_of_node, Give&& give) {
     const double inside = pair.weight, outside = 1 - pair.weight;
-    const bool out_counts = grid.sums[pair.out].mass > empty_mass;
+    const bool out_counts = grid.mass[pair.out] > empty_mass;
     const double missing = velocity - inside * velocity_of_node(pair.in, a) -
                            (out_counts ? outside * velocity_of_node(pair.out, a) : 0.0);
     const double compliance =
-        inside * inside / static_cast<double>(grid.sums[pair.in].mass) +
-        (out_counts ? outside * outside / static_cast<double>(grid.sums[pair.out].mass) : 0.0);
+        inside * inside / static_cast<double>(grid.mass[pair.in]) +
+        (out_counts ? outside * outside / static_cast<double>(grid.mass[pair.out]) : 0.0);
     give(pair.in, a, missing / compliance * inside);
     if (out_counts) give(pair.out, a, missing / compliance * outside);
   }

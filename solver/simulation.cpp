@@ -31,22 +31,24 @@ double time_step_of(const Scene& scene) {
   return std::get<StableFraction>(scene.time_step).fraction * scene.cell_size / fastest_wave(scene);
 }
 
+/// [particle * components + component], particles in the order of their filling; zeros for absent fields.
 template <class Real, std::size_t Components>
-std::vector<double> interleave(const std::array<Field<Real>, Components>& fields, Eigen::Index count) {
-  std::vector<double> all(static_cast<std::size_t>(count) * Components, 0.0);
+std::vector<double> interleave(const std::array<Field<Real>, Components>& fields,
+                               const std::vector<Eigen::Index>& slot_of) {
+  std::vector<double> all(slot_of.size() * Components, 0.0);
   for (std::size_t c = 0; c < Components; ++c) {
-    for (Eigen::Index p = 0; p < fields[c].size(); ++p) {
-      all[static_cast<std::size_t>(p) * Components + c] = static_cast<double>(fields[c][p]);
+    for (std::size_t p = 0; fields[c].size() > 0 && p < slot_of.size(); ++p) {
+      all[p * Components + c] = static_cast<double>(fields[c][slot_of[p]]);
     }
   }
   return all;
 }
 
 template <class Real>
-std::vector<double> to_doubles(const Field<Real>& field) {
-  std::vector<double> all(static_cast<std::size_t>(field.size()));
-  std::transform(field.begin(), field.end(), all.begin(),
-                 [](Real value) { return static_cast<double>(value); });
+std::vector<double> to_doubles(const Field<Real>& field, const std::vector<Eigen::Index>& slot_of) {
+  std::vector<double> all(slot_of.size());
+  std::transform(slot_of.begin(), slot_of.end(), all.begin(),
+                 [&](Eigen::Index slot) { return static_cast<double>(field[slot]); });
   return all;
 }
 
@@ -94,6 +96,7 @@ class Simulation::Engine {
 
   virtual std::int64_t particle_count() const = 0;
   virtual std::int64_t cell_crossings() const = 0;
+  virtual std::int64_t arrangements() const = 0;
   virtual Monitor monitor() const = 0;
   virtual ParticleFields particles() const = 0;
   virtual std::vector<RigidBodyState> rigid_bodies() const = 0;
@@ -159,19 +162,23 @@ class Simulation::Engine {
 template <int Dim, class Real, Scheme scheme>
 class Simulation::EngineOf final : public Simulation::Engine {
  public:
-  explicit EngineOf(const Scene& description)
-      : Engine(description), stepper_(description, time_step()), start_(stepper_.particles().position) {}
+  EngineOf(const Scene& description, int threads)
+      : Engine(description),
+        stepper_(description, time_step(), threads),
+        start_(interleave(stepper_.particles().position, stepper_.particles().slot_of)) {}
 
   std::int64_t particle_count() const override { return stepper_.particles().count(); }
-  std::int64_t cell_crossings() const override { return stepper_.transfer().cell_crossings(); }
+  std::int64_t cell_crossings() const override { return stepper_.cell_crossings(); }
+  std::int64_t arrangements() const override { return stepper_.arrangements(); }
 
   Monitor monitor() const override {
+    const Grid<Dim, Real>& grid = stepper_.grid();
+    const auto [first, count] = grid.place_of(stepper_.active_rows());
     double energy = 0.0;
-    for (std::size_t i = 0; i < stepper_.grid().sums.size(); ++i) {
-      const auto& node = stepper_.grid().sums[i];
+    for (Eigen::Index i = first; i < first + count; ++i) {
       for (std::size_t a = 0; a < Dim; ++a) {
-        const double velocity = static_cast<double>(stepper_.grid().motion[i].velocity[a]);
-        energy += 0.5 * static_cast<double>(node.mass) * velocity * velocity;
+        const double velocity = static_cast<double>(grid.velocity[a][i]);
+        energy += 0.5 * static_cast<double>(grid.mass[i]) * velocity * velocity;
       }
     }
     return {stepper_.unbalanced_force() / weight(), energy / (weight() * scene().cell_size)};
@@ -181,23 +188,25 @@ class Simulation::EngineOf final : public Simulation::Engine {
     const Particles<Dim, Real>& p = stepper_.particles();
     ParticleFields fields;
     fields.dimension = Dim;
-    fields.initial_position = interleave(start_, p.count());
-    fields.displacement = interleave(p.displacement, p.count());
-    fields.position = interleave(p.position, p.count());
-    fields.velocity = interleave(p.velocity, p.count());
-    fields.half_size = interleave(p.half_size, p.count());
-    fields.stress = interleave(p.stress, p.count());
-    fields.volume = to_doubles(p.volume);
-    fields.initial_volume = to_doubles(p.initial_volume);
-    fields.mass = to_doubles(p.mass);
-    if (scene().sums_strain) fields.strain = interleave(p.strain, p.count());
+    fields.initial_position = start_;
+    fields.displacement = interleave(p.displacement, p.slot_of);
+    fields.position = interleave(p.position, p.slot_of);
+    fields.velocity = interleave(p.velocity, p.slot_of);
+    fields.half_size = interleave(p.half_size, p.slot_of);
+    fields.stress = interleave(p.stress, p.slot_of);
+    fields.volume = to_doubles(p.volume, p.slot_of);
+    fields.initial_volume = to_doubles(p.initial_volume, p.slot_of);
+    fields.mass = to_doubles(p.mass, p.slot_of);
+    if (scene().sums_strain) fields.strain = interleave(p.strain, p.slot_of);
     if (p.deformation_gradient[0].size() > 0) {
-      fields.deformation_gradient = interleave(p.deformation_gradient, p.count());
+      fields.deformation_gradient = interleave(p.deformation_gradient, p.slot_of);
     }
-    fields.body.reserve(fields.mass.size());
+    fields.body.resize(p.slot_of.size());
     for (std::size_t b = 0; b < p.bodies.size(); ++b) {
-      fields.body.insert(fields.body.end(), static_cast<std::size_t>(p.bodies[b].last - p.bodies[b].first),
-                         b);
+      for (Eigen::Index slot = p.bodies[b].first; slot < p.bodies[b].last; ++slot) {
+        const std::int32_t id = p.id[static_cast<std::size_t>(slot)];
+        if (id >= 0) fields.body[static_cast<std::size_t>(id)] = b;
+      }
     }
     return fields;
   }
@@ -240,20 +249,20 @@ class Simulation::EngineOf final : public Simulation::Engine {
   }
 
   TimeStepper<Dim, Real, scheme> stepper_;
-  std::array<Field<Real>, Dim> start_;
+  std::vector<double> start_;  ///< positions, [particle * dimension + axis]
 };
 
-Simulation::Simulation(const Scene& scene) {
+Simulation::Simulation(const Scene& scene, int threads) {
   check(scene);
   const auto make = [&]<int Dim, class Real>(std::integral_constant<int, Dim>,
                                              Real) -> std::unique_ptr<Engine> {
     switch (scene.scheme) {
       case Scheme::mpm:
-        return std::make_unique<EngineOf<Dim, Real, Scheme::mpm>>(scene);
+        return std::make_unique<EngineOf<Dim, Real, Scheme::mpm>>(scene, threads);
       case Scheme::ugimp:
-        return std::make_unique<EngineOf<Dim, Real, Scheme::ugimp>>(scene);
+        return std::make_unique<EngineOf<Dim, Real, Scheme::ugimp>>(scene, threads);
       default:
-        return std::make_unique<EngineOf<Dim, Real, Scheme::cpgimp>>(scene);
+        return std::make_unique<EngineOf<Dim, Real, Scheme::cpgimp>>(scene, threads);
     }
   };
   const auto with_dimension = [&](auto dimension) {
@@ -275,6 +284,7 @@ double Simulation::time_step() const { return engine_->time_step(); }
 std::int64_t Simulation::steps() const { return engine_->outcome().step; }
 std::int64_t Simulation::particle_count() const { return engine_->particle_count(); }
 std::int64_t Simulation::cell_crossings() const { return engine_->cell_crossings(); }
+std::int64_t Simulation::arrangements() const { return engine_->arrangements(); }
 Monitor Simulation::monitor() const { return engine_->monitor(); }
 ParticleFields Simulation::particles() const { return engine_->particles(); }
 std::vector<RigidBodyState> Simulation::rigid_bodies() const { return engine_->rigid_bodies(); }

@@ -66,10 +66,12 @@ struct Monitor {
   double kinetic_energy_ratio = 0.0;    ///< kinetic energy of the grid / (total weight * cell size) [-]
 };
 
-/// A scene in motion. Memory is reserved on construction; advancing allocates nothing.
+/// A scene in motion. Memory is reserved on construction; advancing allocates nothing, unless bodies scatter
+/// so far that their particles need more room.
 class Simulation {
  public:
-  explicit Simulation(const Scene& scene);  ///< throws SceneError
+  /// `threads` >= 1 share the work of a step; their number changes no bit of any result. Throws SceneError.
+  explicit Simulation(const Scene& scene, int threads = 1);
   ~Simulation();
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
@@ -83,6 +85,7 @@ class Simulation {
   std::int64_t steps() const;
   std::int64_t particle_count() const;
   std::int64_t cell_crossings() const;  ///< particle centres that changed cell so far, summed over steps
+  std::int64_t arrangements() const;    ///< how often the particles have been put in the order of their cells
   Monitor monitor() const;
   ParticleFields particles() const;
   std::vector<RigidBodyState> rigid_bodies() const;  ///< in the order of the scene

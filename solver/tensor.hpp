@@ -6,9 +6,9 @@
 
 namespace mpm {
 
-/// One value per axis.
-template <int Dim, class Real>
-using Vector = std::array<Real, Dim>;
+/// One value per axis; a Value is a number or lanes of them.
+template <int Dim, class Value>
+using Vector = std::array<Value, Dim>;
 
 /// Independent components of a symmetric tensor: (xx) in 1D, (xx, yy, zz, xy) in 2D plane strain.
 template <int Dim>
@@ -22,32 +22,22 @@ using SymmetricTensor = std::array<Real, symmetric_components<Dim>>;
 template <class Real>
 using Field = Eigen::Array<Real, Eigen::Dynamic, 1>;
 
-/// Stress times a gradient: the traction-like vector of [Kiriyama15, Eq. 2].
-template <int Dim, class Real>
-Vector<Dim, Real> contract(const SymmetricTensor<Dim, Real>& stress, const Vector<Dim, Real>& gradient) {
+/// Symmetric part of a velocity gradient, given as [component][axis], in plane strain in 2D
+/// [Kiriyama15, Eq. 10a].
+template <int Dim, class Value>
+SymmetricTensor<Dim, Value> symmetric_part(const std::array<Vector<Dim, Value>, Dim>& gradient) {
   if constexpr (Dim == 1) {
-    return {stress[0] * gradient[0]};
+    return {gradient[0][0]};
   } else {
-    return {stress[0] * gradient[0] + stress[3] * gradient[1],
-            stress[3] * gradient[0] + stress[1] * gradient[1]};
-  }
-}
-
-/// Adds the symmetric part of velocity (x) gradient [Kiriyama15, Eq. 10a] to `rate`.
-template <int Dim, class Real>
-void add_symmetric_product(const Vector<Dim, Real>& velocity, const Vector<Dim, Real>& gradient,
-                           SymmetricTensor<Dim, Real>& rate) {
-  rate[0] += velocity[0] * gradient[0];
-  if constexpr (Dim == 2) {
-    rate[1] += velocity[1] * gradient[1];
-    rate[3] += (velocity[0] * gradient[1] + velocity[1] * gradient[0]) / 2;
+    return {gradient[0][0], gradient[1][1], Value(0), (gradient[0][1] + gradient[1][0]) / 2};
   }
 }
 
 /// A stress turned anticlockwise by an angle [rad] in the plane; zz stays. Exact for any angle.
-template <class Real>
-SymmetricTensor<2, Real> rotated(const SymmetricTensor<2, Real>& stress, Real angle) {
-  const Real c = std::cos(angle), s = std::sin(angle);
+template <class Value>
+SymmetricTensor<2, Value> rotated(const SymmetricTensor<2, Value>& stress, const Value& angle) {
+  using std::cos, std::sin;
+  const Value c = cos(angle), s = sin(angle);
   return {c * c * stress[0] + s * s * stress[1] - 2 * c * s * stress[3],
           s * s * stress[0] + c * c * stress[1] + 2 * c * s * stress[3], stress[2],
           c * s * (stress[0] - stress[1]) + (c * c - s * s) * stress[3]};

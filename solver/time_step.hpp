@@ -1,111 +1,385 @@
 #pragma once
 
+#include <variant>
+#include <vector>
+
+#include "solver/cell_blocks.hpp"
 #include "solver/grid_motion.hpp"
 #include "solver/loading.hpp"
 #include "solver/material.hpp"
 #include "solver/rigid_bodies.hpp"
 #include "solver/transfer.hpp"
+#include "solver/workers.hpp"
 
 namespace mpm {
 
 /// Particles, grid and what moves them: one explicit step of the Material Point Method [Kiriyama15, Eqs. 1 to
-/// 14].
+/// 14]. Its passes run over blocks of particles; what a pass needs of the one before, it reads again.
 template <int Dim, class Real, Scheme scheme>
 class TimeStepper {
  public:
-  TimeStepper(const Scene& scene, double time_step)
+  /// `threads` >= 1; their number changes no bit of any result.
+  TimeStepper(const Scene& scene, double time_step, int threads)
       : particles_(fill_bodies<Dim, Real>(scene, SchemeTraits<scheme>::has_domain)),
         grid_(scene),
         edges_(scene, grid_),
         rigid_bodies_(scene, grid_, time_step),
         loading_(scene, time_step, particles_),
-        transfer_(particles_),
+        update_stress_(scene.sums_strain, scene.objectivity == Objectivity::jaumann),
         order_(scene.update_order),
         time_step_(static_cast<Real>(time_step)),
         flip_(static_cast<Real>(scene.flip_fraction)),
         damping_(static_cast<Real>(scene.damping)),
-        turns_stress_(scene.objectivity == Objectivity::jaumann),
         empty_mass_(empty_node_mass_ratio<Real> *
-                    static_cast<Real>(total_mass(particles_) / static_cast<double>(particles_.count()))) {
+                    static_cast<Real>(total_mass(particles_) / static_cast<double>(particles_.count()))),
+        blocks_(grid_, SchemeTraits<scheme>::Shape::nodes_before, particles_),
+        workers_(threads) {
+    open_logs();
     for (const Body& body : scene.bodies) laws_.push_back(law_of<Dim, Real>(body.material));
   }
 
   /// One step from `time` [s] on, under the gravity of its end. False if a particle has left what the method
   /// can represent.
   bool advance(double time, const Vector<Dim, Real>& gravity) {
-    if (!transfer_.weigh(particles_, grid_)) return false;
+    if (has_fault_) return false;
+    if (is_disordered_) arrange();
     loading_.set_masses(time, particles_);
+    loading_.set_forces(time, particles_);
     rigid_bodies_.hold(time);
-    grid_.clear();
+    in_rows([&](Rows rows) { grid_.clear(rows); });
     if (order_ == UpdateOrder::usf) {
-      transfer_.scatter_mass_and_momentum(particles_, grid_);
-      update_stress_from_momentum();
-      transfer_.scatter_internal_force(particles_, grid_);
+      scatter<Sends{.mass = true, .momentum = true}>();
+      take_velocity_from_momentum();
+      update_stress_and_scatter_force();
     } else {
-      transfer_.scatter_all(particles_, grid_);
-    }
-    if (loading_.has_forces()) {
-      loading_.set_forces(time, particles_);
-      transfer_.scatter_external_force(particles_, grid_);
+      scatter<Sends{.mass = true, .momentum = true, .internal_force = true}>();
     }
     move_grid(gravity);
-    transfer_.gather_motion(grid_, time_step_, flip_, particles_);
+    if (order_ == UpdateOrder::usl) move_particles_and_update_stress();
+    if (order_ == UpdateOrder::usf) move_particles();
     if (order_ == UpdateOrder::musl) {
-      transfer_.scatter_momentum(particles_, grid_);
-      update_stress_from_momentum();
+      in_rows([&](Rows rows) { grid_.clear_momentum(rows); });
+      accelerate_particles_and_scatter_momentum();
+      take_velocity_from_momentum();
+      update_stress_and_move_particles();
     }
-    if (order_ == UpdateOrder::usl) update_stress_from_velocity();
+    close_logs();
     return true;
   }
 
   const Particles<Dim, Real>& particles() const { return particles_; }
   const Grid<Dim, Real>& grid() const { return grid_; }
-  const Transfer<Dim, Real, scheme>& transfer() const { return transfer_; }
+  /// Rows of nodes that can carry mass; the others are not kept up to date.
+  Rows active_rows() const { return blocks_.active_rows(); }
   const RigidBodies<Dim, Real>& rigid_bodies() const { return rigid_bodies_; }
+  /// Particle centres that changed cell so far, summed over the steps.
+  std::int64_t cell_crossings() const { return cell_crossings_; }
+  /// How often the particles have been put in order.
+  std::int64_t arrangements() const { return arrangements_; }
   /// Of the last step [N]; see Transfer::unbalanced_force.
-  double unbalanced_force() const { return transfer_.unbalanced_force(particles_, grid_, empty_mass_); }
+  double unbalanced_force() const { return Transfers::unbalanced_force(particles_, grid_, empty_mass_); }
   typename Transfer<Dim, Real, scheme>::Fault find_fault() const {
-    return transfer_.find_fault(particles_, grid_);
+    return Transfers::find_fault(particles_, grid_);
   }
 
  private:
+  using Transfers = Transfer<Dim, Real, scheme>;
+  using Value = Lanes<Real>;
+  using Layer = typename Transfers::Layer;
+  using Layers = typename Transfers::Layers;
+  using Motion = GridMotion<Dim, Value>;
+
+  /// What a band's particles did in a step.
+  struct alignas(64) Log {
+    Value crossings = Value(0), strays = Value(0);  ///< in each lane
+    Real lowest_row = 0, end_of_rows = 0;           ///< of cells, within reach of the band
+    bool has_fault = false, has_far_stray = false;
+  };
+
+  // --- passes ---------------------------------------------------------------------------------------------
+
+  template <Sends sends>
+  void scatter() {
+    constexpr Sends with_loads{sends.mass, sends.momentum, sends.internal_force, sends.internal_force};
+    for_each_block_in_two_colours([&](const Block& block, std::size_t, Log&) {
+      Transfers::for_each_layers(particles_, grid_, block, [&](const Layers& layers, std::size_t count) {
+        if (loading_.has_forces()) {
+          Transfers::template scatter<with_loads>(particles_, block, layers, count, grid_);
+        } else {
+          Transfers::template scatter<sends>(particles_, block, layers, count, grid_);
+        }
+      });
+    });
+  }
+
   void move_grid(const Vector<Dim, Real>& gravity) {
-    add_gravity<Dim, Real>(grid_, gravity);
-    edges_.apply(grid_);
+    in_rows([&](Rows rows) {
+      add_gravity<Dim, Real>(grid_, gravity, rows);
+      edges_.apply(grid_, rows);
+    });
     rigid_bodies_.take_up(grid_, empty_mass_);
-    if (damping_ > 0) {
-      accelerate<true>(grid_, time_step_, damping_, empty_mass_);
-    } else {
-      accelerate<false>(grid_, time_step_, damping_, empty_mass_);
+    in_rows([&](Rows rows) {
+      if (damping_ > 0) {
+        accelerate<true>(grid_, time_step_, damping_, empty_mass_, rows);
+      } else {
+        accelerate<false>(grid_, time_step_, damping_, empty_mass_, rows);
+      }
+    });
+    rigid_bodies_.set_motion(grid_, empty_mass_);
+  }
+
+  void take_velocity_from_momentum() {
+    in_rows([&](Rows rows) {
+      edges_.apply(grid_, rows);
+      set_velocity(grid_, empty_mass_, rows);
+    });
+    rigid_bodies_.set_motion(grid_, empty_mass_);
+  }
+
+  /// USL.
+  void move_particles_and_update_stress() {
+    for_each_layer_with_law([&](const auto& law, const Block& block, const Layer& layer, Log& log) {
+      const Motion motion = Transfers::template gather<true, true>(particles_, grid_, block, layer);
+      const Value time_step = time_step_of(layer.slot);
+      const Vector<Dim, Value> travel = accelerate_layer(motion, time_step, layer.slot);
+      const auto deformation = deformation_of<Dim, Value>(motion.gradient, time_step);
+      update_stress_(law, deformation, layer.slot, particles_);
+      grow(deformation, layer.slot);
+      move(travel, block, layer.slot, log);
+    });
+  }
+
+  /// MUSL, first half: the travel of the particles waits in `pending` for the weights to be used once more.
+  void accelerate_particles_and_scatter_momentum() {
+    for_each_block_in_two_colours([&](const Block& block, std::size_t, Log&) {
+      Transfers::for_each_layers(particles_, grid_, block, [&](const Layers& layers, std::size_t count) {
+        for (std::size_t k = 0; k < count; ++k) {
+          const Eigen::Index slot = layers[k].slot;
+          const Motion motion = Transfers::template gather<true, false>(particles_, grid_, block, layers[k]);
+          const Vector<Dim, Value> travel = accelerate_layer(motion, time_step_of(slot), slot);
+          for (std::size_t a = 0; a < Dim; ++a) store(travel[a], &particles_.pending[a][slot]);
+        }
+        Transfers::template scatter<Sends{.momentum = true}>(particles_, block, layers, count, grid_);
+      });
+    });
+  }
+
+  /// MUSL, second half.
+  void update_stress_and_move_particles() {
+    for_each_layer_with_law([&](const auto& law, const Block& block, const Layer& layer, Log& log) {
+      const auto deformation = deformation_of_layer(block, layer);
+      update_stress_(law, deformation, layer.slot, particles_);
+      grow(deformation, layer.slot);
+      Vector<Dim, Value> travel;
+      for (std::size_t a = 0; a < Dim; ++a) travel[a] = load<Value>(&particles_.pending[a][layer.slot]);
+      move(travel, block, layer.slot, log);
+    });
+  }
+
+  /// USF, first half: the growth of the domains waits in `pending` for the weights to be used once more.
+  void update_stress_and_scatter_force() {
+    for_each_block_in_two_colours([&](const Block& block, std::size_t body, Log&) {
+      Transfers::for_each_layers(particles_, grid_, block, [&](const Layers& layers, std::size_t count) {
+        for (std::size_t k = 0; k < count; ++k) {
+          const auto deformation = deformation_of_layer(block, layers[k]);
+          std::visit([&](const auto& law) { update_stress_(law, deformation, layers[k].slot, particles_); },
+                     laws_[body]);
+          if constexpr (SchemeTraits<scheme>::updates_half_size) {
+            for (std::size_t a = 0; a < Dim; ++a) {
+              store(deformation.strain_increment[a], &particles_.pending[a][layers[k].slot]);
+            }
+          }
+        }
+        if (loading_.has_forces()) {
+          Transfers::template scatter<Sends{.internal_force = true, .external_force = true}>(
+              particles_, block, layers, count, grid_);
+        } else {
+          Transfers::template scatter<Sends{.internal_force = true}>(particles_, block, layers, count, grid_);
+        }
+      });
+    });
+  }
+
+  /// USF, second half.
+  void move_particles() {
+    for_each_layer([&](const Block& block, const Layer& layer, Log& log) {
+      const Eigen::Index slot = layer.slot;
+      const Motion motion = Transfers::template gather<true, false>(particles_, grid_, block, layer);
+      const Vector<Dim, Value> travel = accelerate_layer(motion, time_step_of(slot), slot);
+      if constexpr (SchemeTraits<scheme>::updates_half_size) {
+        Deformation<Dim, Value> deformation;
+        for (std::size_t a = 0; a < Dim; ++a) {
+          deformation.strain_increment[a] = load<Value>(&particles_.pending[a][slot]);
+        }
+        grow(deformation, slot);
+      }
+      move(travel, block, slot, log);
+    });
+  }
+
+  // --- what passes do to a layer of particles
+  // ----------------------------------------------------------------
+
+  /// The time step, and none in empty slots.
+  Value time_step_of(Eigen::Index slot) const {
+    return select(load<Value>(&particles_.mass[slot]) > Value(0), Value(time_step_), Value(0));
+  }
+
+  Deformation<Dim, Value> deformation_of_layer(const Block& block, const Layer& layer) const {
+    const Motion motion = Transfers::template gather<false, true>(particles_, grid_, block, layer);
+    return deformation_of<Dim, Value>(motion.gradient, time_step_of(layer.slot));
+  }
+
+  /// Velocities after the step, a blend of the grid's velocity (`flip` 0, PIC) and the grid's acceleration
+  /// (1, FLIP); returns the distances to travel.
+  Vector<Dim, Value> accelerate_layer(const Motion& motion, const Value& time_step, Eigen::Index slot) {
+    Vector<Dim, Value> travel;
+    for (std::size_t a = 0; a < Dim; ++a) {
+      const Value flip_velocity =
+          load<Value>(&particles_.velocity[a][slot]) + time_step * motion.acceleration[a];
+      store(motion.velocity[a] + flip_ * (flip_velocity - motion.velocity[a]), &particles_.velocity[a][slot]);
+      travel[a] = time_step * motion.velocity[a];
     }
-    rigid_bodies_.set_motion(grid_, empty_mass_);
+    return travel;
   }
 
-  void update_stress_from_momentum() {
-    edges_.apply(grid_);
-    set_velocity(grid_, empty_mass_);
-    rigid_bodies_.set_motion(grid_, empty_mass_);
-    update_stress_from_velocity();
-  }
-
-  void update_stress_from_velocity() {
-    transfer_.gather_strain(grid_, time_step_, particles_);
-    if constexpr (Dim == 2) {
-      if (particles_.rotation.size() > 0) {
-        transfer_.gather_rotation(grid_, time_step_, particles_);
-        if (turns_stress_) rotate_stress(particles_);
+  /// Half sizes of cpGIMP [Kiriyama15, Eq. 14].
+  void grow(const Deformation<Dim, Value>& deformation, Eigen::Index slot) {
+    if constexpr (SchemeTraits<scheme>::updates_half_size) {
+      for (std::size_t a = 0; a < Dim; ++a) {
+        Real* const half_size = &particles_.half_size[a][slot];
+        store(load<Value>(half_size) * (1 + deformation.strain_increment[a]), half_size);
       }
     }
-    sum_strain();
-    for (std::size_t b = 0; b < laws_.size(); ++b) {
-      std::visit([&](const auto& law) { update_stress(law, particles_.bodies[b], particles_); }, laws_[b]);
+  }
+
+  /// Moves a layer, and notes who crosses into another cell, strays, or has no next step.
+  void move(const Vector<Dim, Value>& travel, const Block& block, Eigen::Index slot, Log& log) {
+    Vector<Dim, Value> place;
+    auto crosses = Value(0) > Value(0), is_good = Value(0) < load<Value>(&particles_.volume[slot]);
+    for (std::size_t a = 0; a < Dim; ++a) {
+      const Value before = load<Value>(&particles_.position[a][slot]), after = before + travel[a];
+      store(after, &particles_.position[a][slot]);
+      Real* const displacement = &particles_.displacement[a][slot];
+      store(load<Value>(displacement) + travel[a], displacement);
+      place[a] = in_cells(grid_, after, a);
+      crosses = crosses || floor(place[a]) != floor(in_cells(grid_, before, a));
+      constexpr Real ghosts = Grid<Dim, Real>::ghost_layers;
+      const Real last = static_cast<Real>(grid_.nodes(static_cast<int>(a)) - 1) - ghosts;
+      is_good = is_good && place[a] >= Value(ghosts) && place[a] <= Value(last);
+      if constexpr (SchemeTraits<scheme>::has_domain) {
+        is_good =
+            is_good && load<Value>(&particles_.half_size[a][slot]) * grid_.cells_per_length() <= Value(1);
+      }
+    }
+    const auto strays = Transfers::is_outside(block, place);
+    log.crossings = log.crossings + select(crosses, Value(1), Value(0));
+    log.strays = log.strays + select(strays, Value(1), Value(0));
+    log.has_fault = log.has_fault || any(!is_good && load<Value>(&particles_.mass[slot]) > Value(0));
+    if constexpr (Dim == 2) {
+      log.has_far_stray =
+          log.has_far_stray || any(place[1] < Value(log.lowest_row) || place[1] >= Value(log.end_of_rows));
     }
   }
 
-  void sum_strain() {
-    for (std::size_t c = 0; c < particles_.strain.size(); ++c) {
-      if (particles_.strain[c].size() > 0) particles_.strain[c] += particles_.strain_increment[c];
+  // --- order
+  // -------------------------------------------------------------------------------------------------
+
+  void arrange() {
+    blocks_.arrange(grid_, particles_);
+    grid_.clear({0, grid_.rows()});
+    open_logs();
+    is_disordered_ = false;
+    ++arrangements_;
+  }
+
+  void open_logs() {
+    logs_.assign(blocks_.bands().size(), Log());
+    for (std::size_t b = 0; b < logs_.size(); ++b) {
+      const Rows rows = blocks_.bands()[b].rows;
+      logs_[b].lowest_row = static_cast<Real>(rows.begin - CellBlocks<Dim, Real>::stray_rows);
+      logs_[b].end_of_rows = static_cast<Real>(rows.end + CellBlocks<Dim, Real>::stray_rows);
     }
+  }
+
+  /// Reads the logs of a step and empties them.
+  void close_logs() {
+    double crossings = 0, strays = 0;
+    for (Log& log : logs_) {
+      crossings += static_cast<double>(reduce_add(log.crossings));
+      strays += static_cast<double>(reduce_add(log.strays));
+      has_fault_ = has_fault_ || log.has_fault;
+      is_disordered_ = is_disordered_ || log.has_far_stray;
+      log.crossings = log.strays = Value(0);
+    }
+    cell_crossings_ += static_cast<std::int64_t>(crossings);
+    // Alone, a stray costs as much as some tens of particles in lanes; putting a particle in order as much as
+    // a few steps.
+    is_disordered_ = is_disordered_ || strays * 32 > static_cast<double>(particles_.count());
+  }
+
+  // --- who does what
+  // -----------------------------------------------------------------------------------------
+
+  /// Calls `visit(block, body, log)` for the blocks of a band.
+  template <class Visit>
+  void visit_band(std::size_t band, Visit&& visit) {
+    for (std::size_t body = 0; body < laws_.size(); ++body) {
+      const auto [first, last] = blocks_.bands()[band].blocks[body];
+      for (std::size_t k = first; k < last; ++k) visit(blocks_.blocks()[k], body, logs_[band]);
+    }
+  }
+
+  /// For passes that add to nodes.
+  template <class Visit>
+  void for_each_block_in_two_colours(Visit&& visit) {
+    const int bands = static_cast<int>(logs_.size());
+    for (int colour = 0; colour < 2; ++colour) {
+      workers_.run((bands - colour + 1) / 2,
+                   [&](int k) { visit_band(static_cast<std::size_t>(2 * k + colour), visit); });
+    }
+  }
+
+  /// For passes that only read nodes: calls `visit(block, layer, log)`.
+  template <class Visit>
+  void for_each_layer(Visit&& visit) {
+    workers_.run(static_cast<int>(logs_.size()), [&](int band) {
+      visit_band(static_cast<std::size_t>(band), [&](const Block& block, std::size_t, Log& log) {
+        Transfers::for_each_layer(particles_, grid_, block,
+                                  [&](const Layer& layer) { visit(block, layer, log); });
+      });
+    });
+  }
+
+  /// Likewise, with the law of the layer's body: calls `visit(law, block, layer, log)`.
+  template <class Visit>
+  void for_each_layer_with_law(Visit&& visit) {
+    workers_.run(static_cast<int>(logs_.size()), [&](int band) {
+      Log& log = logs_[static_cast<std::size_t>(band)];
+      for (std::size_t body = 0; body < laws_.size(); ++body) {
+        const auto [first, last] = blocks_.bands()[static_cast<std::size_t>(band)].blocks[body];
+        std::visit(
+            [&, begin = first, end = last](const auto& law) {
+              for (std::size_t k = begin; k < end; ++k) {
+                const Block& block = blocks_.blocks()[k];
+                Transfers::for_each_layer(particles_, grid_, block,
+                                          [&](const Layer& layer) { visit(law, block, layer, log); });
+              }
+            },
+            laws_[body]);
+      }
+    });
+  }
+
+  /// Calls `visit(rows)` for the rows of nodes that particles can reach, in as many parts as there are
+  /// threads.
+  template <class Visit>
+  void in_rows(Visit&& visit) {
+    const auto [begin, end] = blocks_.active_rows();
+    const int parts = std::min(workers_.threads(), static_cast<int>(logs_.size()));
+    workers_.run(parts, [&, first = begin, count = end - begin](int k) {
+      visit(Rows{first + count * k / parts, first + count * (k + 1) / parts});
+    });
   }
 
   Particles<Dim, Real> particles_;
@@ -113,12 +387,15 @@ class TimeStepper {
   EdgeConditions<Dim, Real> edges_;
   RigidBodies<Dim, Real> rigid_bodies_;
   Loading<Dim, Real> loading_;
-  Transfer<Dim, Real, scheme> transfer_;
+  StressUpdate<Dim, Real> update_stress_;
   std::vector<typename Laws<Dim, Real>::Any> laws_;
   UpdateOrder order_;
-  Real time_step_, flip_, damping_;
-  bool turns_stress_;
-  Real empty_mass_;
+  Real time_step_, flip_, damping_, empty_mass_;
+  bool has_fault_ = false, is_disordered_ = false;
+  std::int64_t cell_crossings_ = 0, arrangements_ = 0;
+  CellBlocks<Dim, Real> blocks_;
+  std::vector<Log> logs_;
+  Workers workers_;
 };
 
 }  // namespace mpm

@@ -1,41 +1,105 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <span>
-#include <vector>
 
+#include "solver/cell_blocks.hpp"
 #include "solver/grid.hpp"
+#include "solver/lanes.hpp"
 #include "solver/particles.hpp"
 #include "solver/shape_functions.hpp"
 
 namespace mpm {
 
-/// The weights and weight gradients of one particle along each axis, gradients per metre.
+/// The weights and weight gradients of a particle, or of lanes of them, along each axis; gradients per metre.
 /// Their products over the axes are the values at the particle's nodes.
-template <int Dim, class Real, class Shape>
+template <int Dim, class Value, class Shape>
 struct Stencil {
-  std::array<std::array<Real, Shape::width>, Dim> weight;    ///< [-]
-  std::array<std::array<Real, Shape::width>, Dim> gradient;  ///< [1/m]
-  std::int32_t first_node;                                   ///< index into the grid's node arrays
+  std::array<std::array<Value, Shape::width>, Dim> weight;    ///< [-]
+  std::array<std::array<Value, Shape::width>, Dim> gradient;  ///< [1/m]
+};
+
+/// What a particle sees of the grid's motion.
+template <int Dim, class Value>
+struct GridMotion {
+  Vector<Dim, Value> velocity{};                   ///< [m/s]
+  Vector<Dim, Value> acceleration{};               ///< [m/s^2]
+  std::array<Vector<Dim, Value>, Dim> gradient{};  ///< of the velocity, [component][axis] [1/s]
+};
+
+/// What a particle gives to the grid.
+template <int Dim, class Value>
+struct ParticleSums {
+  Value mass;                                 ///< [kg per unit of the absent dimensions]
+  Vector<Dim, Value> momentum;                ///< [kg m/s]
+  SymmetricTensor<Dim, Value> volume_stress;  ///< volume * stress, negative [N m]
+  Vector<Dim, Value> external_force;          ///< [N]
+};
+
+/// Which of a particle's quantities a scatter sends to the grid.
+struct Sends {
+  bool mass = false, momentum = false, internal_force = false, external_force = false;
 };
 
 /// Why a particle cannot be given a stencil, if it cannot.
 enum class StencilFault { none, not_finite, inverted, outside_grid, domain_too_large };
 
-/// The only loops over particles and their nodes. The stencils are made once a step, by `weigh`.
+/// The only loops over particles and their nodes. They run over the layers of a block, lanes of particles at
+/// a time; strays are taken out of their lanes and go through the same functions alone.
 template <int Dim, class Real, Scheme scheme>
 class Transfer {
  public:
   using Shape = typename SchemeTraits<scheme>::Shape;
+  using Value = Lanes<Real>;
   using Points = Particles<Dim, Real>;
   using Nodes = Grid<Dim, Real>;
+  using Weights = Stencil<Dim, Value, Shape>;
+  static constexpr int lanes = lane_count<Real>;
 
-  explicit Transfer(const Points& particles)
-      : stencils_(static_cast<std::size_t>(particles.count())), cell_(stencils_.size(), -1) {}
+  /// A layer of a block with its stencils.
+  struct Layer {
+    Eigen::Index slot;
+    Weights weights;
+    bool has_strays;
+  };
+  /// So many layers are scattered at once, because a node is touched once for all of them.
+  static constexpr std::size_t layers_at_once = 4;
+  using Layers = std::array<Layer, layers_at_once>;
 
-  /// Makes the stencils of all particles and counts the centres that changed cell.
-  /// False if a particle cannot have one; the stencils are then of no use and `find_fault` says why.
-  bool weigh(const Points& particles, const Nodes& grid);
+  /// Calls `visit(layers, count)` for the layers of a block, `layers_at_once` of them at a time.
+  template <class Visit>
+  static void for_each_layers(const Points& particles, const Nodes& grid, const Block& block, Visit&& visit) {
+    Layers layers;
+    for (std::int32_t done = 0; done < block.depth; done += static_cast<std::int32_t>(layers_at_once)) {
+      const auto count = std::min(layers_at_once, static_cast<std::size_t>(block.depth - done));
+      for (std::size_t k = 0; k < count; ++k) {
+        weigh(particles, grid, block, block.first_slot + (done + Eigen::Index(k)) * lanes, layers[k]);
+      }
+      visit(layers, count);
+    }
+  }
+
+  /// Calls `visit(layer)` for the layers of a block, one after another.
+  template <class Visit>
+  static void for_each_layer(const Points& particles, const Nodes& grid, const Block& block, Visit&& visit) {
+    Layer layer;
+    for (std::int32_t k = 0; k < block.depth; ++k) {
+      weigh(particles, grid, block, block.first_slot + Eigen::Index(k) * lanes, layer);
+      visit(layer);
+    }
+  }
+
+  /// Adds what the particles of some layers send to the grid [Kiriyama15, Eqs. 1, 2, 3 and 9].
+  template <Sends sends>
+  static void scatter(const Points& particles, const Block& block, const Layers& layers, std::size_t count,
+                      Nodes& grid);
+
+  /// What the particles of a layer see of the grid's motion [Kiriyama15, Eqs. 5 to 8 and 10a].
+  template <bool motion, bool gradient>
+  static GridMotion<Dim, Value> gather(const Points& particles, const Nodes& grid, const Block& block,
+                                       const Layer& layer);
 
   /// The first particle that cannot have a stencil, or whose stress or velocity is not finite; why; and its
   /// offending value in SI units.
@@ -46,83 +110,327 @@ class Transfer {
   };
   static Fault find_fault(const Points& particles, const Nodes& grid);
 
-  /// Adds mass and momentum to the grid [Kiriyama15, Eqs. 1 and 9].
-  void scatter_mass_and_momentum(const Points& particles, Nodes& grid) const;
-  /// Adds momentum alone: the second mapping of MUSL.
-  void scatter_momentum(const Points& particles, Nodes& grid) const;
-  /// Adds the internal force [Kiriyama15, Eq. 2].
-  void scatter_internal_force(const Points& particles, Nodes& grid) const;
-  /// Adds the particles' external forces, of a scene that has them [Kiriyama15, Eq. 3].
-  void scatter_external_force(const Points& particles, Nodes& grid) const;
-  /// Adds mass, momentum and internal force in one pass.
-  void scatter_all(const Points& particles, Nodes& grid) const;
-
-  /// Moves the particles with the grid [Kiriyama15, Eqs. 5 to 8]; `flip` blends the velocity update from
-  /// 0 (PIC, the grid's velocity) to 1 (FLIP, the grid's acceleration).
-  void gather_motion(const Nodes& grid, Real time_step, Real flip, Points& particles) const;
-  /// Strain increments from the grid's velocity [Kiriyama15, Eq. 10a], and half sizes for cpGIMP [Eq. 14].
-  void gather_strain(const Nodes& grid, Real time_step, Points& particles) const;
-  /// Rotations from the grid's velocity: half its curl times the time step.
-  void gather_rotation(const Nodes& grid, Real time_step, Points& particles) const requires(Dim == 2);
-
   /// Sum over the particles of |mass * unbalanced acceleration of the grid at the particle| [N]: the part of
   /// the unbalanced nodal force that the particles can feel. A pattern of nodal forces whose accelerations
   /// cancel at every particle moves nothing, so it does not keep a model from being at rest.
-  double unbalanced_force(const Points& particles, const Nodes& grid, Real empty_mass) const;
+  static double unbalanced_force(const Points& particles, const Nodes& grid, Real empty_mass);
 
-  std::int64_t cell_crossings() const { return cell_crossings_; }
+  /// Lanes in which a place, in cells from the grid's first node, is outside a block's cells.
+  static auto is_outside(const Block& block, const Vector<Dim, Value>& place) {
+    auto outside = !is_in_cell(place[0] - (lane_numbers<Real>() + static_cast<Real>(block.first_cell)));
+    if constexpr (Dim == 2) outside = outside || !is_in_cell(place[1] - static_cast<Real>(block.row));
+    return outside;
+  }
 
  private:
-  static StencilFault fault_of(const Points& particles, const Nodes& grid, Eigen::Index p);
+  static auto is_in_cell(const Value& place) { return place >= Value(0) && place < Value(1); }
 
-  /// Calls `visit(node index, weight, gradient)` for each node of a particle.
+  /// The nodes of lanes of particles, or of one: the index of the first, and the distance between rows.
+  struct Place {
+    Eigen::Index first;
+    std::int32_t row_stride;
+  };
+  static Place place_of(const Block& block, const Nodes& grid) {
+    const std::int32_t row = Dim == 1 ? 0 : block.row - Shape::nodes_before;
+    return {Eigen::Index(row) * grid.row_stride() + block.first_cell - Shape::nodes_before,
+            grid.row_stride()};
+  }
+
+  static void weigh(const Points& particles, const Nodes& grid, const Block& block, Eigen::Index slot,
+                    Layer& layer);
+  static Place weigh_alone(const Points& particles, const Nodes& grid, Eigen::Index slot,
+                           Stencil<Dim, Real, Shape>& stencil);
+  template <class V>
+  static void evaluate(const Vector<Dim, V>& place, const Vector<Dim, V>& half_size, Real per_length,
+                       Stencil<Dim, V, Shape>& stencil);
+  template <Sends sends, class V>
+  static ParticleSums<Dim, V> read(const Points& particles, Eigen::Index slot);
+  template <class V>
+  static V at(const Field<Real>& field, Eigen::Index slot) {
+    return load<V>(&field[slot]);
+  }
+
+  template <Sends sends, class V, class ReadStencil, class ReadSums>
+  static void add(std::size_t count, ReadStencil&& stencil, ReadSums&& sums, Place place, Nodes& grid);
+  static void add_to_nodes(const std::array<Value, Shape::width>& sums, Real* nodes);
+  static void add_to_nodes(const std::array<Real, Shape::width>& sums, Real* nodes) {
+    for (std::size_t i = 0; i < sums.size(); ++i) nodes[i] += sums[i];
+  }
+
+  template <bool motion, bool gradient, class V>
+  static GridMotion<Dim, V> see(const Nodes& grid, Place place, const Stencil<Dim, V, Shape>& stencil);
+
+  /// Calls `visit(lane)` for the strays of a layer.
   template <class Visit>
-  static void for_each_node(const Stencil<Dim, Real, Shape>& stencil, std::int32_t row_stride,
-                            Visit&& visit) {
-    if constexpr (Dim == 1) {
-      for (std::size_t i = 0; i < Shape::width; ++i) {
-        visit(static_cast<std::size_t>(stencil.first_node) + i, stencil.weight[0][i],
-              Vector<1, Real>{stencil.gradient[0][i]});
+  static void for_each_stray(const Points& particles, const Nodes& grid, const Block& block,
+                             Eigen::Index slot, Visit&& visit);
+  static StencilFault fault_of(const Points& particles, const Nodes& grid, Eigen::Index slot);
+};
+
+/// A place along an axis in cells from the grid's first node.
+template <class V, int Dim, class Real>
+V in_cells(const Grid<Dim, Real>& grid, const V& position, std::size_t axis) {
+  return (position - grid.origin(static_cast<int>(axis))) * grid.cells_per_length();
+}
+
+template <int Dim, class Real, Scheme scheme>
+template <class V>
+void Transfer<Dim, Real, scheme>::evaluate(const Vector<Dim, V>& place, const Vector<Dim, V>& half_size,
+                                           Real per_length, Stencil<Dim, V, Shape>& stencil) {
+  for (std::size_t a = 0; a < Dim; ++a) {
+    Shape::evaluate(place[a], half_size[a], stencil.weight[a], stencil.gradient[a]);
+    for (V& gradient : stencil.gradient[a]) gradient = gradient * per_length;
+  }
+}
+
+template <int Dim, class Real, Scheme scheme>
+void Transfer<Dim, Real, scheme>::weigh(const Points& particles, const Nodes& grid, const Block& block,
+                                        Eigen::Index slot, Layer& layer) {
+  Vector<Dim, Value> place, half_size;
+  for (std::size_t a = 0; a < Dim; ++a) {
+    place[a] = in_cells(grid, at<Value>(particles.position[a], slot), a);
+    half_size[a] = SchemeTraits<scheme>::has_domain
+                       ? at<Value>(particles.half_size[a], slot) * grid.cells_per_length()
+                       : Value(0);
+  }
+  layer.slot = slot;
+  layer.has_strays = any(is_outside(block, place));
+  place[0] = place[0] - (lane_numbers<Real>() + static_cast<Real>(block.first_cell - Shape::nodes_before));
+  if constexpr (Dim == 2) place[1] = place[1] - static_cast<Real>(block.row - Shape::nodes_before);
+  evaluate(place, half_size, grid.cells_per_length(), layer.weights);
+}
+
+template <int Dim, class Real, Scheme scheme>
+auto Transfer<Dim, Real, scheme>::weigh_alone(const Points& particles, const Nodes& grid, Eigen::Index slot,
+                                              Stencil<Dim, Real, Shape>& stencil) -> Place {
+  Vector<Dim, Real> place, half_size;
+  Eigen::Index first = 0;
+  for (std::size_t axis = Dim; axis-- > 0;) {
+    const Real cells = in_cells(grid, particles.position[axis][slot], axis);
+    const std::int32_t first_node = static_cast<std::int32_t>(cells) - Shape::nodes_before;
+    place[axis] = cells - static_cast<Real>(first_node);
+    half_size[axis] = SchemeTraits<scheme>::has_domain
+                          ? particles.half_size[axis][slot] * grid.cells_per_length()
+                          : Real(0);
+    first = first * grid.row_stride() + first_node;
+  }
+  evaluate(place, half_size, grid.cells_per_length(), stencil);
+  return {first, grid.row_stride()};
+}
+
+template <int Dim, class Real, Scheme scheme>
+template <class Visit>
+void Transfer<Dim, Real, scheme>::for_each_stray(const Points& particles, const Nodes& grid,
+                                                 const Block& block, Eigen::Index slot, Visit&& visit) {
+  for (int lane = 0; lane < lanes; ++lane) {
+    const std::array<std::int32_t, 2> cell{block.first_cell + lane, block.row};
+    bool is_stray = false;
+    for (std::size_t a = 0; a < Dim; ++a) {
+      const Real place = in_cells(grid, particles.position[a][slot + lane], a) - static_cast<Real>(cell[a]);
+      is_stray = is_stray || !(place >= 0 && place < 1);
+    }
+    if (is_stray) visit(lane);
+  }
+}
+
+template <int Dim, class Real, Scheme scheme>
+template <Sends sends, class V>
+ParticleSums<Dim, V> Transfer<Dim, Real, scheme>::read(const Points& particles, Eigen::Index slot) {
+  ParticleSums<Dim, V> sums;
+  if constexpr (sends.mass || sends.momentum) sums.mass = at<V>(particles.mass, slot);
+  if constexpr (sends.momentum) {
+    for (std::size_t a = 0; a < Dim; ++a) sums.momentum[a] = sums.mass * at<V>(particles.velocity[a], slot);
+  }
+  if constexpr (sends.internal_force) {
+    const V volume = at<V>(particles.volume, slot);
+    for (std::size_t c = 0; c < Points::components; ++c) {
+      if (c != 2) sums.volume_stress[c] = -volume * at<V>(particles.stress[c], slot);
+    }
+  }
+  if constexpr (sends.external_force) {
+    for (std::size_t a = 0; a < Dim; ++a) sums.external_force[a] = at<V>(particles.external_force[a], slot);
+  }
+  return sums;
+}
+
+/// Adds the sums of `count` particles, or layers of them, to their nodes, which are the same for all.
+/// The force on a node is -V sigma . grad S; in two dimensions grad S = (S'x Sy, Sx S'y).
+template <int Dim, class Real, Scheme scheme>
+template <Sends sends, class V, class ReadStencil, class ReadSums>
+void Transfer<Dim, Real, scheme>::add(std::size_t count, ReadStencil&& stencil_of, ReadSums&& sums_of,
+                                      Place place, Nodes& grid) {
+  constexpr std::size_t width = Shape::width;
+  constexpr bool force = sends.internal_force || sends.external_force;
+  for (std::size_t j = 0; j < (Dim == 1 ? 1 : width); ++j) {
+    std::array<V, width> mass{};
+    std::array<std::array<V, width>, Dim> momentum{}, nodal_force{};
+    for (std::size_t i = 0; i < width; ++i) {
+      mass[i] = V(0);
+      for (std::size_t a = 0; a < Dim; ++a) momentum[a][i] = nodal_force[a][i] = V(0);
+    }
+    for (std::size_t k = 0; k < count; ++k) {
+      const Stencil<Dim, V, Shape>& stencil = stencil_of(k);
+      const ParticleSums<Dim, V>& particle = sums_of(k);
+      const V weight_y = Dim == 1 ? V(1) : stencil.weight[Dim - 1][j];
+      const V gradient_y = Dim == 1 ? V(0) : stencil.gradient[Dim - 1][j];
+      const auto& weight_x = stencil.weight[0];
+      const auto& gradient_x = stencil.gradient[0];
+      if constexpr (sends.mass) {
+        const V in_row = weight_y * particle.mass;
+        for (std::size_t i = 0; i < width; ++i) mass[i] = mass[i] + weight_x[i] * in_row;
       }
-    } else {
-      for (std::size_t j = 0; j < Shape::width; ++j) {
-        const std::size_t row =
-            static_cast<std::size_t>(stencil.first_node) + j * static_cast<std::size_t>(row_stride);
-        for (std::size_t i = 0; i < Shape::width; ++i) {
-          visit(row + i, stencil.weight[0][i] * stencil.weight[1][j],
-                Vector<2, Real>{stencil.gradient[0][i] * stencil.weight[1][j],
-                                stencil.weight[0][i] * stencil.gradient[1][j]});
+      for (std::size_t a = 0; a < Dim; ++a) {
+        if constexpr (sends.momentum) {
+          const V in_row = weight_y * particle.momentum[a];
+          for (std::size_t i = 0; i < width; ++i) momentum[a][i] = momentum[a][i] + weight_x[i] * in_row;
+        }
+        if constexpr (sends.internal_force) {
+          const V in_row = weight_y * particle.volume_stress[a == 0 ? 0 : 3];
+          for (std::size_t i = 0; i < width; ++i)
+            nodal_force[a][i] = nodal_force[a][i] + gradient_x[i] * in_row;
+        }
+        if constexpr (force && !(Dim == 1 && !sends.external_force)) {
+          V in_row(0);
+          if constexpr (sends.internal_force && Dim == 2)
+            in_row = gradient_y * particle.volume_stress[a == 0 ? 3 : 1];
+          if constexpr (sends.external_force) in_row = in_row + weight_y * particle.external_force[a];
+          for (std::size_t i = 0; i < width; ++i)
+            nodal_force[a][i] = nodal_force[a][i] + weight_x[i] * in_row;
         }
       }
     }
+    const Eigen::Index row = place.first + static_cast<Eigen::Index>(j) * place.row_stride;
+    if constexpr (sends.mass) add_to_nodes(mass, &grid.mass[row]);
+    for (std::size_t a = 0; a < Dim; ++a) {
+      if constexpr (sends.momentum) add_to_nodes(momentum[a], &grid.momentum[a][row]);
+      if constexpr (force) add_to_nodes(nodal_force[a], &grid.force[a][row]);
+    }
   }
+}
 
-  template <bool mass_and_momentum, bool internal_force>
-  void scatter(const Points& particles, Nodes& grid) const;
+/// The i-th sums belong to the i-th node of each lane, which is node lane + i.
+template <int Dim, class Real, Scheme scheme>
+void Transfer<Dim, Real, scheme>::add_to_nodes(const std::array<Value, Shape::width>& sums, Real* nodes) {
+  if constexpr (lanes >= Shape::width) {
+    const Value zero(0);
+    Value lower = sums[0], upper = zero;
+    [&]<int... i>(std::integer_sequence<int, i...>) {
+      ((lower = lower + moved_up<i + 1>(zero, sums[i + 1])), ...);
+      ((upper = upper + moved_up<i + 1>(sums[i + 1], zero)), ...);
+    }
+    (std::make_integer_sequence<int, Shape::width - 1>{});
+    store(load<Value>(nodes) + lower, nodes);
+    store(load<Value>(nodes + lanes) + upper, nodes + lanes);
+  } else {
+    for (std::size_t i = 0; i < sums.size(); ++i) store(load<Value>(nodes + i) + sums[i], nodes + i);
+  }
+}
 
-  std::vector<Stencil<Dim, Real, Shape>> stencils_;
-  std::vector<std::int32_t> cell_;  ///< of each particle's centre at the last weighing
-  std::int64_t cell_crossings_ = 0;
-};
+template <int Dim, class Real, Scheme scheme>
+template <Sends sends>
+void Transfer<Dim, Real, scheme>::scatter(const Points& particles, const Block& block, const Layers& layers,
+                                          std::size_t count, Nodes& grid) {
+  std::array<ParticleSums<Dim, Value>, layers_at_once> sums;
+  for (std::size_t k = 0; k < count; ++k) {
+    sums[k] = read<sends, Value>(particles, layers[k].slot);
+    if (!layers[k].has_strays) continue;
+    for_each_stray(particles, grid, block, layers[k].slot, [&](int lane) {
+      Stencil<Dim, Real, Shape> stencil;
+      const Eigen::Index slot = layers[k].slot + lane;
+      const Place place = weigh_alone(particles, grid, slot, stencil);
+      const auto alone = read<sends, Real>(particles, slot);
+      add<sends, Real>(
+          1, [&](std::size_t) -> auto& { return stencil; }, [&](std::size_t) -> auto& { return alone; },
+          place, grid);
+      if constexpr (sends.mass) set_lane(sums[k].mass, lane, Real(0));
+      for (std::size_t a = 0; a < Dim; ++a) {
+        if constexpr (sends.momentum) set_lane(sums[k].momentum[a], lane, Real(0));
+        if constexpr (sends.external_force) set_lane(sums[k].external_force[a], lane, Real(0));
+      }
+      for (std::size_t c = 0; sends.internal_force && c < Points::components; ++c) {
+        if (c != 2) set_lane(sums[k].volume_stress[c], lane, Real(0));
+      }
+    });
+  }
+  add<sends, Value>(
+      count, [&](std::size_t k) -> auto& { return layers[k].weights; },
+      [&](std::size_t k) -> auto& { return sums[k]; }, place_of(block, grid), grid);
+}
+
+template <int Dim, class Real, Scheme scheme>
+template <bool motion, bool gradient, class V>
+GridMotion<Dim, V> Transfer<Dim, Real, scheme>::see(const Nodes& grid, Place place,
+                                                    const Stencil<Dim, V, Shape>& stencil) {
+  GridMotion<Dim, V> seen;
+  for (std::size_t a = 0; a < Dim; ++a) {
+    seen.velocity[a] = seen.acceleration[a] = V(0);
+    for (std::size_t axis = 0; axis < Dim; ++axis) seen.gradient[a][axis] = V(0);
+  }
+  for (std::size_t j = 0; j < (Dim == 1 ? 1 : Shape::width); ++j) {
+    const Eigen::Index row = place.first + static_cast<Eigen::Index>(j) * place.row_stride;
+    const V weight_y = Dim == 1 ? V(1) : stencil.weight[Dim - 1][j];
+    const V gradient_y = Dim == 1 ? V(0) : stencil.gradient[Dim - 1][j];
+    for (std::size_t a = 0; a < Dim; ++a) {
+      V velocity(0), slope(0), acceleration(0);
+      for (std::size_t i = 0; i < Shape::width; ++i) {
+        const V nodal = load<V>(&grid.velocity[a][row] + i);
+        velocity = velocity + stencil.weight[0][i] * nodal;
+        if constexpr (gradient) slope = slope + stencil.gradient[0][i] * nodal;
+        if constexpr (motion) {
+          acceleration = acceleration + stencil.weight[0][i] * load<V>(&grid.acceleration[a][row] + i);
+        }
+      }
+      if constexpr (motion) {
+        seen.velocity[a] = seen.velocity[a] + weight_y * velocity;
+        seen.acceleration[a] = seen.acceleration[a] + weight_y * acceleration;
+      }
+      if constexpr (gradient) {
+        seen.gradient[a][0] = seen.gradient[a][0] + weight_y * slope;
+        if constexpr (Dim == 2) seen.gradient[a][1] = seen.gradient[a][1] + gradient_y * velocity;
+      }
+    }
+  }
+  return seen;
+}
+
+template <int Dim, class Real, Scheme scheme>
+template <bool motion, bool gradient>
+auto Transfer<Dim, Real, scheme>::gather(const Points& particles, const Nodes& grid, const Block& block,
+                                         const Layer& layer) -> GridMotion<Dim, Value> {
+  GridMotion<Dim, Value> seen = see<motion, gradient, Value>(grid, place_of(block, grid), layer.weights);
+  if (!layer.has_strays) return seen;
+  for_each_stray(particles, grid, block, layer.slot, [&](int lane) {
+    Stencil<Dim, Real, Shape> stencil;
+    const Place place = weigh_alone(particles, grid, layer.slot + lane, stencil);
+    const GridMotion<Dim, Real> alone = see<motion, gradient, Real>(grid, place, stencil);
+    for (std::size_t a = 0; a < Dim; ++a) {
+      set_lane(seen.velocity[a], lane, alone.velocity[a]);
+      set_lane(seen.acceleration[a], lane, alone.acceleration[a]);
+      for (std::size_t axis = 0; axis < Dim; ++axis) {
+        set_lane(seen.gradient[a][axis], lane, alone.gradient[a][axis]);
+      }
+    }
+  });
+  return seen;
+}
 
 template <int Dim, class Real, Scheme scheme>
 StencilFault Transfer<Dim, Real, scheme>::fault_of(const Points& particles, const Nodes& grid,
-                                                   Eigen::Index p) {
+                                                   Eigen::Index slot) {
   for (std::size_t axis = 0; axis < Dim; ++axis) {
-    const Real x =
-        (particles.position[axis][p] - grid.origin(static_cast<int>(axis))) * grid.cells_per_length();
+    const Real x = in_cells(grid, particles.position[axis][slot], axis);
     const Real last = static_cast<Real>(grid.nodes(static_cast<int>(axis)) - 1 - Nodes::ghost_layers);
     // Written so that a value that is not a number fails too.
     if (!(x >= Real(Nodes::ghost_layers) && x <= last)) {
       return std::isfinite(x) ? StencilFault::outside_grid : StencilFault::not_finite;
     }
     if constexpr (SchemeTraits<scheme>::has_domain) {
-      if (!(particles.half_size[axis][p] * grid.cells_per_length() <= 1))
+      if (!(particles.half_size[axis][slot] * grid.cells_per_length() <= 1))
         return StencilFault::domain_too_large;
     }
   }
-  if (!(particles.volume[p] > 0)) {
-    return std::isfinite(particles.volume[p]) ? StencilFault::inverted : StencilFault::not_finite;
+  if (!(particles.volume[slot] > 0)) {
+    return std::isfinite(particles.volume[slot]) ? StencilFault::inverted : StencilFault::not_finite;
   }
   return StencilFault::none;
 }
@@ -130,185 +438,51 @@ StencilFault Transfer<Dim, Real, scheme>::fault_of(const Points& particles, cons
 template <int Dim, class Real, Scheme scheme>
 auto Transfer<Dim, Real, scheme>::find_fault(const Points& particles, const Nodes& grid) -> Fault {
   for (Eigen::Index p = 0; p < particles.count(); ++p) {
-    const StencilFault kind = fault_of(particles, grid, p);
+    const Eigen::Index slot = particles.slot_of[static_cast<std::size_t>(p)];
+    const StencilFault kind = fault_of(particles, grid, slot);
     if (kind == StencilFault::none) {
       for (const auto& fields : {std::span<const Field<Real>>(particles.stress),
                                  std::span<const Field<Real>>(particles.velocity)}) {
         for (const Field<Real>& field : fields) {
-          if (!std::isfinite(field[p])) return {StencilFault::not_finite, p, static_cast<double>(field[p])};
+          if (!std::isfinite(field[slot]))
+            return {StencilFault::not_finite, p, static_cast<double>(field[slot])};
         }
       }
       continue;
     }
-    Real value = particles.volume[p];
-    if (kind == StencilFault::domain_too_large) value = particles.half_size[0][p];
+    Real value = particles.volume[slot];
+    if (kind == StencilFault::domain_too_large) value = particles.half_size[0][slot];
     if (kind == StencilFault::outside_grid || kind == StencilFault::not_finite)
-      value = particles.position[0][p];
+      value = particles.position[0][slot];
     return {kind, p, static_cast<double>(value)};
   }
   return {};
 }
 
 template <int Dim, class Real, Scheme scheme>
-bool Transfer<Dim, Real, scheme>::weigh(const Points& particles, const Nodes& grid) {
-  const Real per_length = grid.cells_per_length();
-  std::int64_t crossings = 0;
-  for (Eigen::Index p = 0; p < particles.count(); ++p) {
-    if (fault_of(particles, grid, p) != StencilFault::none) return false;
-    Stencil<Dim, Real, Shape>& stencil = stencils_[static_cast<std::size_t>(p)];
-    std::int32_t first_node = 0, cell = 0;
-    for (int axis = Dim - 1; axis >= 0; --axis) {
-      const std::size_t a = static_cast<std::size_t>(axis);
-      const Real position = (particles.position[a][p] - grid.origin(axis)) * per_length;
-      const Real half_size =
-          SchemeTraits<scheme>::has_domain ? particles.half_size[a][p] * per_length : Real(0);
-      const std::int32_t first = Shape::first_node(position, half_size);
-      Shape::evaluate(position, half_size, first, stencil.weight[a], stencil.gradient[a]);
-      for (Real& gradient : stencil.gradient[a]) gradient *= per_length;
-      first_node = first_node * (axis == Dim - 1 ? 0 : grid.nodes(0)) + first;
-      cell = cell * (axis == Dim - 1 ? 0 : grid.nodes(0)) + static_cast<std::int32_t>(position);
-    }
-    stencil.first_node = first_node;
-    std::int32_t& last_cell = cell_[static_cast<std::size_t>(p)];
-    crossings += (last_cell >= 0) & (last_cell != cell);
-    last_cell = cell;
-  }
-  cell_crossings_ += crossings;
-  return true;
-}
-
-template <int Dim, class Real, Scheme scheme>
-template <bool mass_and_momentum, bool internal_force>
-void Transfer<Dim, Real, scheme>::scatter(const Points& particles, Nodes& grid) const {
-  const std::int32_t row_stride = grid.row_stride();
-  for (Eigen::Index p = 0; p < particles.count(); ++p) {
-    const Real mass = particles.mass[p];
-    Vector<Dim, Real> momentum;
-    for (std::size_t a = 0; a < Dim; ++a) momentum[a] = mass * particles.velocity[a][p];
-    SymmetricTensor<Dim, Real> minus_volume_stress;
-    for (std::size_t c = 0; c < Points::components; ++c) {
-      minus_volume_stress[c] = -particles.volume[p] * particles.stress[c][p];
-    }
-    for_each_node(stencils_[static_cast<std::size_t>(p)], row_stride,
-                  [&](std::size_t i, Real weight, const Vector<Dim, Real>& gradient) {
-                    NodeSums<Dim, Real>& node = grid.sums[i];
-                    if constexpr (mass_and_momentum) {
-                      node.mass += weight * mass;
-                      for (std::size_t a = 0; a < Dim; ++a) node.momentum[a] += weight * momentum[a];
-                    }
-                    if constexpr (internal_force) {
-                      const Vector<Dim, Real> force = contract<Dim, Real>(minus_volume_stress, gradient);
-                      for (std::size_t a = 0; a < Dim; ++a) node.force[a] += force[a];
-                    }
-                  });
-  }
-}
-
-template <int Dim, class Real, Scheme scheme>
-void Transfer<Dim, Real, scheme>::scatter_mass_and_momentum(const Points& particles, Nodes& grid) const {
-  scatter<true, false>(particles, grid);
-}
-template <int Dim, class Real, Scheme scheme>
-void Transfer<Dim, Real, scheme>::scatter_internal_force(const Points& particles, Nodes& grid) const {
-  scatter<false, true>(particles, grid);
-}
-template <int Dim, class Real, Scheme scheme>
-void Transfer<Dim, Real, scheme>::scatter_all(const Points& particles, Nodes& grid) const {
-  scatter<true, true>(particles, grid);
-}
-
-template <int Dim, class Real, Scheme scheme>
-void Transfer<Dim, Real, scheme>::scatter_external_force(const Points& particles, Nodes& grid) const {
-  for (Eigen::Index p = 0; p < particles.count(); ++p) {
-    Vector<Dim, Real> force;
-    for (std::size_t a = 0; a < Dim; ++a) force[a] = particles.external_force[a][p];
-    for_each_node(stencils_[static_cast<std::size_t>(p)], grid.row_stride(),
-                  [&](std::size_t i, Real weight, const Vector<Dim, Real>&) {
-                    for (std::size_t a = 0; a < Dim; ++a) grid.sums[i].force[a] += weight * force[a];
-                  });
-  }
-}
-
-template <int Dim, class Real, Scheme scheme>
-void Transfer<Dim, Real, scheme>::scatter_momentum(const Points& particles, Nodes& grid) const {
-  for (NodeSums<Dim, Real>& node : grid.sums) node.momentum = {};
-  for (Eigen::Index p = 0; p < particles.count(); ++p) {
-    Vector<Dim, Real> momentum;
-    for (std::size_t a = 0; a < Dim; ++a) momentum[a] = particles.mass[p] * particles.velocity[a][p];
-    for_each_node(stencils_[static_cast<std::size_t>(p)], grid.row_stride(),
-                  [&](std::size_t i, Real weight, const Vector<Dim, Real>&) {
-                    for (std::size_t a = 0; a < Dim; ++a) grid.sums[i].momentum[a] += weight * momentum[a];
-                  });
-  }
-}
-
-template <int Dim, class Real, Scheme scheme>
-void Transfer<Dim, Real, scheme>::gather_motion(const Nodes& grid, Real time_step, Real flip,
-                                                Points& particles) const {
-  for (Eigen::Index p = 0; p < particles.count(); ++p) {
-    Vector<Dim, Real> velocity{}, acceleration{};
-    for_each_node(stencils_[static_cast<std::size_t>(p)], grid.row_stride(),
-                  [&](std::size_t i, Real weight, const Vector<Dim, Real>&) {
-                    for (std::size_t a = 0; a < Dim; ++a) {
-                      velocity[a] += weight * grid.motion[i].velocity[a];
-                      acceleration[a] += weight * grid.motion[i].acceleration[a];
-                    }
-                  });
-    for (std::size_t a = 0; a < Dim; ++a) {
-      const Real flip_velocity = particles.velocity[a][p] + time_step * acceleration[a];
-      particles.velocity[a][p] = velocity[a] + flip * (flip_velocity - velocity[a]);
-      particles.position[a][p] += time_step * velocity[a];
-      particles.displacement[a][p] += time_step * velocity[a];
-    }
-  }
-}
-
-template <int Dim, class Real, Scheme scheme>
-void Transfer<Dim, Real, scheme>::gather_strain(const Nodes& grid, Real time_step, Points& particles) const {
-  for (Eigen::Index p = 0; p < particles.count(); ++p) {
-    SymmetricTensor<Dim, Real> rate{};
-    for_each_node(stencils_[static_cast<std::size_t>(p)], grid.row_stride(),
-                  [&](std::size_t i, Real, const Vector<Dim, Real>& gradient) {
-                    add_symmetric_product<Dim, Real>(grid.motion[i].velocity, gradient, rate);
-                  });
-    for (std::size_t c = 0; c < Points::components; ++c)
-      particles.strain_increment[c][p] = time_step * rate[c];
-    if constexpr (SchemeTraits<scheme>::updates_half_size) {
-      for (std::size_t a = 0; a < Dim; ++a) particles.half_size[a][p] *= 1 + particles.strain_increment[a][p];
-    }
-  }
-}
-
-template <int Dim, class Real, Scheme scheme>
 double Transfer<Dim, Real, scheme>::unbalanced_force(const Points& particles, const Nodes& grid,
-                                                     Real empty_mass) const {
+                                                     Real empty_mass) {
   double sum = 0.0;
-  for (Eigen::Index p = 0; p < particles.count(); ++p) {
+  for (const Eigen::Index slot : particles.slot_of) {
+    if (fault_of(particles, grid, slot) != StencilFault::none) continue;
+    Stencil<Dim, Real, Shape> stencil;
+    const Place place = weigh_alone(particles, grid, slot, stencil);
     Vector<Dim, Real> acceleration{};
-    for_each_node(stencils_[static_cast<std::size_t>(p)], grid.row_stride(),
-                  [&](std::size_t i, Real weight, const Vector<Dim, Real>&) {
-                    const NodeSums<Dim, Real>& node = grid.sums[i];
-                    if (!(node.mass > empty_mass)) return;
-                    for (std::size_t a = 0; a < Dim; ++a)
-                      acceleration[a] += weight * (node.force[a] / node.mass);
-                  });
-    for (Real component : acceleration) sum += static_cast<double>(particles.mass[p] * std::abs(component));
+    for (std::size_t j = 0; j < (Dim == 1 ? 1 : Shape::width); ++j) {
+      for (std::size_t i = 0; i < Shape::width; ++i) {
+        const Eigen::Index node =
+            place.first + static_cast<Eigen::Index>(j) * place.row_stride + static_cast<Eigen::Index>(i);
+        if (!(grid.mass[node] > empty_mass)) continue;
+        const Real weight = stencil.weight[0][i] * (Dim == 1 ? Real(1) : stencil.weight[Dim - 1][j]);
+        for (std::size_t a = 0; a < Dim; ++a)
+          acceleration[a] += weight * (grid.force[a][node] / grid.mass[node]);
+      }
+    }
+    for (Real component : acceleration) {
+      sum += static_cast<double>(particles.mass[slot] * std::abs(component));
+    }
   }
   return sum;
-}
-
-template <int Dim, class Real, Scheme scheme>
-void Transfer<Dim, Real, scheme>::gather_rotation(const Nodes& grid, Real time_step, Points& particles) const
-    requires(Dim == 2) {
-  for (Eigen::Index p = 0; p < particles.count(); ++p) {
-    Real curl = 0;
-    for_each_node(stencils_[static_cast<std::size_t>(p)], grid.row_stride(),
-                  [&](std::size_t i, Real, const Vector<Dim, Real>& gradient) {
-                    const Vector<Dim, Real>& velocity = grid.motion[i].velocity;
-                    curl += velocity[1] * gradient[0] - velocity[0] * gradient[1];
-                  });
-    particles.rotation[p] = time_step * curl / 2;
-  }
 }
 
 }  // namespace mpm

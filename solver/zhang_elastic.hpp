@@ -16,10 +16,12 @@ class ZhangElasticLaw {
       : modulus_(material.youngs_modulus), twice_modulus_(static_cast<Real>(2 * material.youngs_modulus)) {}
 
   /// Cauchy stress [Pa] at a stretch equal to `volume_ratio` [-], > 0.
-  SymmetricTensor<1, Real> update(const SymmetricTensor<1, Real>& /*stress*/,
-                                  const SymmetricTensor<1, Real>& /*strain_increment*/,
-                                  Real volume_ratio) const {
-    return {twice_modulus_ * (1 - 1 / std::sqrt(volume_ratio))};
+  template <class Value>
+  SymmetricTensor<1, Value> update(const SymmetricTensor<1, Value>& /*stress*/,
+                                   const SymmetricTensor<1, Value>& /*strain_increment*/,
+                                   const Value& volume_ratio) const {
+    using std::sqrt;
+    return {twice_modulus_ * (1 - 1 / sqrt(volume_ratio))};
   }
 
   /// Modulus of the elastic wave at lambda = 1 [Pa].

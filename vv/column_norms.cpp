@@ -89,9 +89,9 @@ Eigen::MatrixXd lengths_in_cells(const Scene& scene, const Profile& profile) {
     for (std::size_t p = 0; p < profile.position.size(); ++p) {
       const double x = profile.position[p] / scene.cell_size + ghost_layers;
       const double half_size = profile.half_size[p] / scene.cell_size;
-      const std::int32_t first = Shape::first_node(x, half_size);
+      const std::int32_t first = static_cast<std::int32_t>(x) - Shape::nodes_before;
       std::array<double, Shape::width> weight, gradient;
-      Shape::evaluate(x, half_size, first, weight, gradient);
+      Shape::evaluate(x - first, half_size, weight, gradient);
       double inside = 0.0;
       for (int k = 0; k + 1 < Shape::width; ++k) {
         inside -=

@@ -69,12 +69,14 @@ TEST(VerificationOfLaws, TurningAStressKeepsItsInvariantsAndComesBack) {
 
 TEST(Laws, UpdateVolumeBeforeStress) {
   Particles<1, double> particles;
-  particles.stress[0] = particles.strain_increment[0] = particles.volume = particles.initial_volume =
-      Field<double>::Ones(1);
-  particles.strain_increment[0][0] = -0.19;
-  update_stress(ZhangElasticLaw<double>(ZhangElastic{1e7}), {0, 1}, particles);
-  EXPECT_NEAR(particles.volume[0], 0.81, 1e-15);
-  EXPECT_NEAR(particles.stress[0][0], 2e7 * (1 - 1 / 0.9), 1e-6);
+  particles.stress[0] = particles.volume = particles.initial_volume = Field<double>::Ones(lane_count<double>);
+  const Deformation<1, Lanes<double>> squeeze{{Lanes<double>(-0.19)}, Lanes<double>(0.0)};
+  const StressUpdate<1, double> update_stress(false, false);
+  update_stress(ZhangElasticLaw<double>(ZhangElastic{1e7}), squeeze, 0, particles);
+  for (Eigen::Index lane = 0; lane < lane_count<double>; ++lane) {
+    EXPECT_NEAR(particles.volume[lane], 0.81, 1e-15);
+    EXPECT_NEAR(particles.stress[0][lane], 2e7 * (1 - 1 / 0.9), 1e-6);
+  }
 }
 
 }  // namespace

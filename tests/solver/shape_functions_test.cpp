@@ -13,8 +13,8 @@ template <class Shape, class Real>
 struct Sample {
   std::array<Real, Shape::width> weight, gradient;
   std::int32_t first;
-  Sample(Real position, Real half_size) : first(Shape::first_node(position, half_size)) {
-    Shape::evaluate(position, half_size, first, weight, gradient);
+  Sample(Real position, Real half_size) : first(static_cast<std::int32_t>(position) - Shape::nodes_before) {
+    Shape::evaluate(position - static_cast<Real>(first), half_size, weight, gradient);
   }
   Real node(std::size_t k) const { return static_cast<Real>(first) + static_cast<Real>(k); }
   Real weight_of(std::int32_t node_index) const {
