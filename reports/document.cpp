@@ -11,6 +11,7 @@
 #include "reports/canvas.hpp"
 #include "reports/figures.hpp"
 #include "reports/page_data.hpp"
+#include "reports/performance_section.hpp"
 #include "vv/norms.hpp"
 
 namespace mpm::reports {
@@ -647,7 +648,9 @@ std::vector<DrawnFigure> draw_figures(const vv::CampaignVerdict& verdict) {
   return figures;
 }
 
-std::string report_html(const vv::CampaignVerdict& verdict, const std::vector<DrawnFigure>& figures) {
+std::string report_html(const vv::CampaignVerdict& verdict, const std::vector<DrawnFigure>& figures,
+                        const PerformanceEvidence& performance,
+                        const std::vector<DrawnPerformanceFigure>& performance_figures) {
   data page(data::type::object);
   page.set("style", std::string(document_style()));
   set_verdict(page, verdict);
@@ -668,22 +671,28 @@ std::string report_html(const vv::CampaignVerdict& verdict, const std::vector<Dr
   page.set("case_sections", sections);
   page.set("commands", commands);
   set_runs_across_cases(page, verdict);
+  page.set("performance", performance_section(performance, verdict, performance_figures, figure_number));
   page.set("glossary", glossary());
   return rendered(document_template(), page);
 }
 
-void write_report(const vv::CampaignVerdict& verdict, const std::filesystem::path& directory) {
+void write_report(const vv::CampaignVerdict& verdict, const std::filesystem::path& directory,
+                  const PerformanceEvidence& performance) {
   const std::vector<DrawnFigure> figures = draw_figures(verdict);
+  const std::vector<DrawnPerformanceFigure> performance_figures = draw_performance_figures(performance);
   std::filesystem::create_directories(directory / "figures");
   std::string failures;
-  for (const DrawnFigure& figure : figures) {
+  const auto write = [&](const DrawnFigure& figure) {
     const std::string name = figure.case_id + "-" + figure.figure_id;
     if (figure.failure.empty())
       vv::write_atomically(directory / "figures" / (name + ".png"), figure.png);
     else
       failures += (failures.empty() ? "" : "; ") + name + ": " + figure.failure;
-  }
-  vv::write_atomically(directory / "report.html", report_html(verdict, figures));
+  };
+  for (const DrawnFigure& figure : figures) write(figure);
+  for (const DrawnPerformanceFigure& figure : performance_figures) write(figure.drawn);
+  vv::write_atomically(directory / "report.html",
+                       report_html(verdict, figures, performance, performance_figures));
   if (!failures.empty()) throw CanvasError("figures could not be drawn: " + failures);
 }
 
