@@ -63,6 +63,50 @@ std::string file_name(std::string text) {
   return text;
 }
 
+/// The configurations of steps, and which of their words are not the same in all.
+struct DifferingWords {
+  std::vector<std::vector<std::string>> all;
+  std::vector<bool> differs;  ///< empty without steps
+};
+
+DifferingWords differing_words(const Steps& steps) {
+  DifferingWords words;
+  for (const StepRate* step : steps) words.all.push_back(configuration(*step));
+  for (std::size_t word = 0; !words.all.empty() && word < words.all.front().size(); ++word)
+    words.differs.push_back(std::any_of(words.all.begin(), words.all.end(), [&](const auto& each) {
+      return each[word] != words.all.front()[word];
+    }));
+  return words;
+}
+
+/// A row a step. Where steps differ in update order, law or precision as well as in other words, those of the
+/// same three stand together, below a heading that names them.
+template <class MakeBars>
+std::vector<Row> rows_under_headings(const Steps& steps, MakeBars bars) {
+  const auto [all, differs] = differing_words(steps);
+  const auto said = [&, &all = all, &differs = differs](std::size_t i,
+                                                        std::initializer_list<std::size_t> words) {
+    std::string text;
+    for (const std::size_t word : words)
+      if (differs[word]) text = joined({text, all[i][word]});
+    return text;
+  };
+  const bool headed = !steps.empty() && (differs[0] || differs[4] || differs[5]);
+  std::vector<std::string> headings;
+  std::map<std::string, std::vector<Row>> by_heading;
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    const std::string heading = headed ? said(i, {1, 2, 3}) : "";
+    if (by_heading[heading].empty()) headings.push_back(heading);
+    by_heading[heading].push_back({headed ? said(i, {0, 4, 5}) : said(i, {1, 2, 3}), bars(i)});
+  }
+  std::vector<Row> rows;
+  for (const std::string& heading : headings) {
+    if (!heading.empty()) rows.push_back({fmt::format("<b>{}</b>", heading), {}});
+    rows.insert(rows.end(), by_heading[heading].begin(), by_heading[heading].end());
+  }
+  return rows;
+}
+
 std::string stamp_of(const Performance& performance) {
   return escaped(fmt::format("mpmvv · performance · measured at revision {} on {}",
                              performance.full_revision(), performance.date));
@@ -78,8 +122,8 @@ std::vector<std::string> scenes_of(const Items& items, SceneOf scene_of) {
   return scenes;
 }
 
-/// A round upper end for bars that reach up to `largest`.
-Range bar_range(double largest) { return {0.0, largest > 0.0 ? 1.04 * largest : 1.0}; }
+/// For bars that reach up to `largest`, with room for the value behind the longest.
+Range bar_range(double largest) { return {0.0, largest > 0.0 ? 1.2 * largest : 1.0}; }
 
 int decimals_for(double largest) { return largest < 10.0 ? 2 : largest < 1000.0 ? 1 : 0; }
 
@@ -119,24 +163,46 @@ std::size_t scheme_series_of(const StepRate& step) {
   return std::min<std::size_t>(scheme_look(step.scheme), 3);
 }
 
-/// Rows in charts of at most `most_bars`, all with the same axis.
+/// Rows in parts of at most `most_bars` bars; a part that begins amid a group repeats its heading.
+std::vector<std::vector<Row>> page_by_page(const std::vector<Row>& rows) {
+  std::vector<std::vector<Row>> parts;
+  std::size_t used = most_bars;
+  const Row* heading = nullptr;
+  for (const Row& row : rows) {
+    if (row.bars.empty()) {
+      heading = &row;
+      continue;  // set with the first row below it
+    }
+    const bool opens = heading && &row == heading + 1;
+    if (used + row.bars.size() + (opens ? 1 : 0) > most_bars) {
+      parts.emplace_back();
+      used = 0;
+    }
+    if (heading && (opens || parts.back().empty())) {
+      parts.back().push_back(*heading);
+      ++used;
+    }
+    parts.back().push_back(row);
+    used += row.bars.size();
+  }
+  return parts;
+}
+
+/// Rows in as many charts as it takes, all with the same axis. `fill` sets what is said of each.
 template <class Fill>
 std::vector<PerformanceFigure> in_charts(const std::string& id, const std::string& title,
-                                         std::vector<Row> rows, const Fill& fill) {
+                                         const std::vector<Row>& rows, const Fill& fill) {
   std::vector<PerformanceFigure> figures;
   const Range range = bar_range(largest_in(rows));
-  const std::size_t most_rows = most_bars / std::max<std::size_t>(1, rows.empty() ? 1 : rows[0].bars.size());
-  for (std::size_t first = 0; first < rows.size(); first += most_rows) {
-    const auto begin = rows.begin() + static_cast<std::ptrdiff_t>(first);
-    const auto end = rows.begin() + static_cast<std::ptrdiff_t>(std::min(rows.size(), first + most_rows));
+  for (const std::vector<Row>& part : page_by_page(rows)) {
     RowChart chart;
-    chart.panels = {rate_panel(title, {begin, end})};
+    chart.panels = {rate_panel(title, part)};
     chart.panels.front().x.range = range;
     chart.spread_legend = "smallest to largest repetition";
     PerformanceFigure figure;
-    figure.id = first == 0 ? file_name(id) : fmt::format("{}-{}", file_name(id), first / most_rows + 1);
+    figure.id = file_name(id) + (figures.empty() ? "" : fmt::format("-{}", figures.size() + 1));
     fill(chart, figure.caption);
-    if (first > 0) figure.caption += " (continued)";
+    if (!figures.empty()) figure.caption += " Continued.";
     figure.content = std::move(chart);
     figures.push_back(std::move(figure));
   }
@@ -306,17 +372,16 @@ std::vector<StepPair> pairs(const Performance& performance, std::size_t word, Is
   return found;
 }
 
-constexpr std::size_t precision_word = 3, threads_word = 5;
-
 std::string scene_and(const std::string& scene, const std::string& rest, bool several_scenes) {
   return joined({several_scenes || rest.empty() ? words(scene) : "", rest});
 }
 
 /// Rows of ratios, named by what tells them apart.
-std::vector<Row> ratio_rows(const std::vector<StepPair>& pairs, std::string& common) {
+std::vector<Row> ratio_rows(const std::vector<StepPair>& pairs, std::optional<std::size_t> compared_word,
+                            std::string& common) {
   Steps others;
   for (const StepPair& pair : pairs) others.push_back(pair.other);
-  const ConfigurationNames names = configuration_names(others);
+  const ConfigurationNames names = configuration_names(others, compared_word);
   const bool several = scenes_of(others, [](const StepRate* s) { return s->scene; }).size() > 1;
   common = several ? names.common : title_of(others.front()->scene, names.common);
   std::vector<Row> rows;
@@ -330,10 +395,10 @@ std::vector<Row> ratio_rows(const std::vector<StepPair>& pairs, std::string& com
 
 /// A panel of ratios with lines at 1 and, if `ideal` is given, there.
 RowPanel ratio_panel(const std::string& title, const std::vector<StepPair>& pairs,
-                     std::optional<double> ideal) {
+                     std::optional<std::size_t> compared_word, std::optional<double> ideal) {
   RowPanel panel;
   std::string common;
-  panel.rows = ratio_rows(pairs, common);
+  panel.rows = ratio_rows(pairs, compared_word, common);
   panel.title = joined({title, common});
   panel.x = {"ratio of rates",
              Scale::linear,
@@ -372,19 +437,15 @@ std::vector<std::string> configuration(const StepRate& step) {
           threads_name(step.threads)};
 }
 
-ConfigurationNames configuration_names(const Steps& steps) {
-  ConfigurationNames names;
-  std::vector<std::vector<std::string>> all, own(steps.size());
-  for (const StepRate* step : steps) all.push_back(configuration(*step));
-  std::vector<std::string> common;
-  for (std::size_t word = 0; !all.empty() && word < all.front().size(); ++word) {
-    const bool shared = std::all_of(all.begin(), all.end(),
-                                    [&](const auto& each) { return each[word] == all.front()[word]; });
-    if (shared) common.push_back(all.front()[word]);
-    for (std::size_t i = 0; i < all.size() && !shared; ++i) own[i].push_back(all[i][word]);
+ConfigurationNames configuration_names(const Steps& steps, std::optional<std::size_t> left_out) {
+  const auto [all, differs] = differing_words(steps);
+  ConfigurationNames names{std::vector<std::string>(steps.size()), ""};
+  for (std::size_t word = 0; word < differs.size(); ++word) {
+    if (word == left_out) continue;
+    if (!differs[word]) names.common = joined({names.common, all.front()[word]});
+    for (std::size_t i = 0; i < all.size() && differs[word]; ++i)
+      names.own[i] = joined({names.own[i], all[i][word]});
   }
-  for (const auto& each : own) names.own.push_back(joined(each));
-  names.common = joined(common);
   return names;
 }
 
@@ -419,17 +480,18 @@ std::vector<PerformanceFigure> rate_figures(const Performance& performance) {
     for (const StepRate& step : performance.steps)
       if (step.scene == scene) steps.push_back(&step);
     const ConfigurationNames names = configuration_names(steps);
-    std::vector<Row> rows;
-    for (std::size_t i = 0; i < steps.size(); ++i)
-      rows.push_back({names.own[i], {rate_bar(*steps[i], scheme_series_of(*steps[i]))}});
-    const auto charts = in_charts("rates-" + scene, title_of(scene, names.common), std::move(rows),
-                                  [&](RowChart& chart, std::string& caption) {
-                                    chart.series = scheme_series();
-                                    chart.mark_legend = "target";
-                                    chart.stamp = stamp_of(performance);
-                                    caption = "Rate of whole steps of the scene " + words(scene) +
-                                              ", by configuration: median of the repetitions.";
-                                  });
+    const auto bars = [&steps](std::size_t i) {
+      return std::vector<RowBar>{rate_bar(*steps[i], scheme_series_of(*steps[i]))};
+    };
+    const auto charts =
+        in_charts("rates-" + scene, title_of(scene, names.common), rows_under_headings(steps, bars),
+                  [&](RowChart& chart, std::string& caption) {
+                    chart.series = scheme_series();
+                    chart.mark_legend = "target";
+                    chart.stamp = stamp_of(performance);
+                    caption = "Rate of whole steps of the scene " + words(scene) +
+                              ", by configuration: median of the repetitions.";
+                  });
     figures.insert(figures.end(), charts.begin(), charts.end());
   }
   return figures;
@@ -486,12 +548,13 @@ std::optional<PerformanceFigure> roofline_figure(const Performance& performance)
   plot.frame_aspect = 0.72;
   plot.stamp = stamp_of(performance);
   plot.panels = {std::move(panel)};
-  return PerformanceFigure{
-      "roofline",
-      "Whole steps on one thread below the measured limits of the machine. Bytes and operations "
-      "are counted a particle-step, not measured: the distance to a roof says how much of the "
-      "time goes into neither.",
-      std::move(plot)};
+  return PerformanceFigure{"roofline",
+                           "Whole steps on one thread and the measured limits of the machine. Bytes and "
+                           "operations a particle-step "
+                           "are counted, not measured. A point at a roof is bound by it; one far below all "
+                           "of them waits for something "
+                           "else. What fits a cache may lie above the line of the memory.",
+                           std::move(plot)};
 }
 
 std::optional<PerformanceFigure> ratio_figure(const Performance& performance) {
@@ -501,10 +564,11 @@ std::optional<PerformanceFigure> ratio_figure(const Performance& performance) {
   if (!threads.empty()) {
     const auto ideal = ideal_of(threads);
     const std::string title = ideal ? threads_name(static_cast<int>(*ideal)) : "several threads";
-    chart.panels.push_back(ratio_panel("<b>" + title + " over one</b>", threads, ideal));
+    chart.panels.push_back(ratio_panel("<b>" + title + " over one</b>", threads,
+                                       ideal ? std::optional(threads_word) : std::nullopt, ideal));
   }
   if (!precisions.empty())
-    chart.panels.push_back(ratio_panel("<b>float over double</b>", precisions, std::nullopt));
+    chart.panels.push_back(ratio_panel("<b>float over double</b>", precisions, precision_word, std::nullopt));
   chart.series = scheme_series();
   chart.spread_legend = "from the extremes of both";
   chart.stamp = stamp_of(performance);
@@ -515,19 +579,21 @@ std::vector<PerformanceFigure> history_figures(const Performance& before, const 
   std::vector<PerformanceFigure> figures;
   const std::vector<StepPair> all = common_steps(before, after);
   for (const std::string& scene : scenes_of(all, [](const StepPair& pair) { return pair.other->scene; })) {
-    Steps steps;
-    std::vector<Row> rows;
-    for (const StepPair& pair : all)
-      if (pair.other->scene == scene) steps.push_back(pair.other);
+    Steps steps, earlier;
+    for (const StepPair& pair : all) {
+      if (pair.other->scene != scene) continue;
+      steps.push_back(pair.other);
+      earlier.push_back(pair.one);
+    }
     const ConfigurationNames names = configuration_names(steps);
-    for (const StepPair& pair : all)
-      if (pair.other->scene == scene)
-        rows.push_back({names.own[rows.size()], {rate_bar(*pair.one, 0), rate_bar(*pair.other, 1)}});
-    // A target is an aim for what stands today.
-    for (Row& row : rows) row.bars.front().mark = RowBar::none;
+    const auto bars = [&](std::size_t i) {
+      std::vector<RowBar> both{rate_bar(*earlier[i], 0), rate_bar(*steps[i], 1)};
+      both.front().mark = RowBar::none;  // a target is an aim for what stands today
+      return both;
+    };
     const auto charts = in_charts(
-        "history-" + before.full_revision() + "-" + scene, title_of(scene, names.common), std::move(rows),
-        [&](RowChart& chart, std::string& caption) {
+        "history-" + before.full_revision() + "-" + scene, title_of(scene, names.common),
+        rows_under_headings(steps, bars), [&](RowChart& chart, std::string& caption) {
           Look look = look_of_series(1);
           chart.series.push_back({"before: revision " + escaped(before.full_revision()), look});
           look.pattern = Look::Pattern::solid;

@@ -20,12 +20,16 @@ struct PerformanceFigure {
 /// law, precision, particles, threads.
 std::vector<std::string> configuration(const StepRate& step);
 
+inline constexpr std::size_t precision_word = 3, threads_word = 5;
+
 /// The words in which steps differ, one text a step, and those they all share. A step alone shares all.
 struct ConfigurationNames {
   std::vector<std::string> own;
   std::string common;
 };
-ConfigurationNames configuration_names(const std::vector<const StepRate*>& steps);
+/// The word `left_out` is said nowhere.
+ConfigurationNames configuration_names(const std::vector<const StepRate*>& steps,
+                                       std::optional<std::size_t> left_out = std::nullopt);
 
 /// "10 000" of 10000, with spaces that do not break.
 std::string grouped_digits(std::int64_t count);
@@ -49,7 +53,8 @@ std::vector<StepPair> common_steps(const Performance& before, const Performance&
 /// The figures that the measurements suffice for; an absent one has nothing to draw. Rates stand in millions
 /// a second.
 ///
-/// - Rates: a bar a configuration, a chart a scene (long ones continue in another), target and spread marked.
+/// - Rates: a bar a configuration, a chart a scene (long ones continue in another), target and spread marked;
+///   rows of one update order, law and precision stand together under a heading.
 /// - Sizes: rate over the number of particles, a curve a scheme and number of threads, of those measured at
 ///   several sizes.
 /// - Roofline: arithmetic done a second over arithmetic a byte moved, one point a step on one thread, below

@@ -28,7 +28,7 @@ std::string spaced(std::string text) {
 std::string millions(double rate) { return number_markup(rate / 1e6); }
 
 std::string from_to(const Measured& value, double unit, int digits = 3) {
-  return number_markup(value.low / unit, digits) + " – " + number_markup(value.high / unit, digits);
+  return number_markup(value.low / unit, digits) + "\u00a0–\u00a0" + number_markup(value.high / unit, digits);
 }
 
 std::string if_any(const std::optional<double>& value) { return value ? number_markup(*value) : "–"; }
@@ -40,7 +40,7 @@ std::string percent(const std::optional<double>& share) {
 std::string cores_text(int cores) { return fmt::format("{} core{}", cores, cores == 1 ? "" : "s"); }
 
 std::string instructions_text(bool native) {
-  return native ? "all instructions of the machine" : "instructions that any such machine has";
+  return native ? "all instructions of the machine" : "instructions common to such machines";
 }
 
 // ---- where it was measured ----
@@ -53,9 +53,7 @@ std::string difference(const std::string& measured, const std::string& reported)
 
 std::string revision_remark(const Performance& measured, const vv::CampaignVerdict& verdict) {
   const bool differs = !verdict.revision.empty() && measured.full_revision() != verdict.revision;
-  if (differs)
-    return "not the revision of this report, " + verdict.revision +
-           "; the source that was measured may be as fast, slower or faster";
+  if (differs) return "not the revision of this report, " + verdict.revision;
   if (measured.modified) return "with changes that no revision holds";
   return "";
 }

@@ -56,7 +56,7 @@ struct Placed {
 void draw_axis(Canvas& canvas, const Placed& placed) {
   const Rectangle& f = placed.frame;
   const Ticks ticks =
-      linear_ticks(placed.panel->x.range, std::clamp(static_cast<int>(f.width() / 45.0), 2, 7));
+      linear_ticks(placed.panel->x.range, std::clamp(static_cast<int>(f.width() / 35.0), 3, 7));
   const double step = ticks.major.size() > 1 ? ticks.major[1] - ticks.major[0] : 1.0;
   for (const double value : ticks.major) {
     const double x = placed.at(value);
@@ -104,7 +104,7 @@ void draw_bar(Canvas& canvas, const Placed& placed, const RowBar& bar, double mi
     // A mark close behind the bar would stand in the value.
     if (x > end - 2.0 && x < end + value_gap + text_width(text) + 2.0) end = x;
   }
-  const double left = std::min(end, f.right) + value_gap;
+  const double left = std::min(end + value_gap, f.right - text_width(text) - value_gap);
   canvas.rectangle({left - 1.0, middle - 4.5, left + text_width(text) + 1.0, middle + 4.5}, white);
   canvas.text({left, middle}, text, text_style(Horizontal::left, Vertical::middle));
   layout.annotations.push_back({left, middle - 4.5, left + text_width(text), middle + 4.5});
@@ -158,14 +158,11 @@ std::vector<LegendEntry> legend_of(const RowChart& chart) {
 }  // namespace
 
 Picture draw(const RowChart& chart, double pixels_per_point) {
-  double names = 0.0, values = 0.0;
+  double names = 0.0;
   for (const RowPanel& panel : chart.panels)
-    for (const Row& row : panel.rows) {
-      names = std::max(names, text_width(row.name));
-      for (const RowBar& bar : row.bars) values = std::max(values, text_width(value_text(panel, bar)));
-    }
+    for (const Row& row : panel.rows) names = std::max(names, text_width(row.name));
   const double left = outer_margin + names + tick_gap;
-  const double right = std::max(left + 60.0, chart.width - outer_margin - values - value_gap - 2.0);
+  const double right = std::max(left + 60.0, chart.width - outer_margin - 1.0);
   std::vector<Placed> placed;
   double top = outer_margin;
   for (const RowPanel& panel : chart.panels) {

@@ -20,8 +20,8 @@ struct RowBar {
 
 /// Bars one below the other that share a name.
 struct Row {
-  std::string name;  ///< markup
-  std::vector<RowBar> bars;
+  std::string name;          ///< markup
+  std::vector<RowBar> bars;  ///< none makes the name a heading of the rows below
 };
 
 /// An upright line through all rows.
@@ -33,7 +33,7 @@ struct RowLine {
 
 struct RowPanel {
   std::string title;  ///< markup
-  Axis x;             ///< linear
+  Axis x;             ///< linear; its values are written inside the frame, for which it should leave room
   std::vector<Row> rows;
   std::vector<RowLine> lines;
   int decimals = 1;  ///< of the value written behind each bar

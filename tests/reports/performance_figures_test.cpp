@@ -22,11 +22,35 @@ const PlotCurve& curve(const Panel& panel, const std::string& label) {
   return *found;
 }
 
+/// The rows of a panel that have bars.
+std::vector<Row> bar_rows(const RowPanel& panel) {
+  std::vector<Row> rows;
+  std::copy_if(panel.rows.begin(), panel.rows.end(), std::back_inserter(rows),
+               [](const Row& row) { return !row.bars.empty(); });
+  return rows;
+}
+
+/// Headings of a panel, each with the number of rows below it.
+using Headings = std::vector<std::pair<std::string, int>>;
+
+Headings headings(const RowPanel& panel) {
+  Headings found;
+  for (const Row& row : panel.rows) {
+    if (row.bars.empty())
+      found.emplace_back(row.name, 0);
+    else if (!found.empty())
+      ++found.back().second;
+  }
+  return found;
+}
+
 TEST(ConfigurationNames, SayOnlyWhatDiffers) {
   const Performance p = support::demo_performance();
   const ConfigurationNames names = configuration_names({&p.steps[2], &p.steps[3], &p.steps[9]});
   EXPECT_EQ(names.common, "USL, Mohr–Coulomb, double, 10\u00a0000 particles");
   EXPECT_EQ(names.own, (std::vector<std::string>{"MPM, 1 thread", "MPM, 2 threads", "uGIMP, 2 threads"}));
+  EXPECT_EQ(configuration_names({&p.steps[2], &p.steps[3]}, threads_word).own,
+            (std::vector<std::string>{"", ""}));
   EXPECT_EQ(configuration_names({&p.steps[2]}).own, std::vector<std::string>{""});
   EXPECT_TRUE(configuration_names({}).own.empty());
 }
@@ -44,16 +68,19 @@ TEST(RateFigures, HaveABarAStepWithTargetAndSpread) {
   EXPECT_EQ(figures[0].id, "rates-footing");
   EXPECT_EQ(figures[1].id, "rates-block");
   const RowPanel& footing = chart_of(figures[0]).panels.at(0);
-  ASSERT_EQ(footing.rows.size(), 19U);
+  EXPECT_EQ(headings(footing), (Headings{{"<b>double</b>", 18}, {"<b>float</b>", 1}}));
+  const std::vector<Row> rows = bar_rows(footing);
+  ASSERT_EQ(rows.size(), 19U);
+  EXPECT_EQ(rows[2].name, "MPM, 10\u00a0000 particles, 1 thread");
   EXPECT_EQ(footing.title, "footing, USL, Mohr–Coulomb");
-  const RowBar& bar = footing.rows[2].bars.at(0);
+  const RowBar& bar = rows[2].bars.at(0);
   EXPECT_EQ(chart_of(figures[0]).series[bar.series].label, "MPM");
   EXPECT_DOUBLE_EQ(bar.value, 40.0);
   EXPECT_DOUBLE_EQ(bar.low, 36.0);
   EXPECT_DOUBLE_EQ(bar.high, 44.0);
   EXPECT_DOUBLE_EQ(bar.mark, 20.0);
-  EXPECT_TRUE(std::isnan(footing.rows[3].bars.at(0).mark));
-  for (const Row& row : footing.rows) EXPECT_LT(row.bars[0].high, footing.x.range.upper);
+  EXPECT_TRUE(std::isnan(rows[3].bars.at(0).mark));
+  for (const Row& row : rows) EXPECT_LT(row.bars[0].high, footing.x.range.upper);
   // The target of the block lies beyond its bar, and still on the axis.
   EXPECT_GT(chart_of(figures[1]).panels[0].x.range.upper, 52.0);
 }
@@ -66,8 +93,20 @@ TEST(RateFigures, ContinueInAnotherChartWithTheSameAxis) {
   const auto figures = rate_figures(support::performance_of(json));
   ASSERT_EQ(figures.size(), 3U);
   EXPECT_EQ(figures[1].id, "rates-footing-2");
-  EXPECT_EQ(chart_of(figures[0]).panels[0].rows.size() + chart_of(figures[1]).panels[0].rows.size(), 49U);
+  EXPECT_EQ(headings(chart_of(figures[0]).panels[0]), (Headings{{"<b>double</b>", 35}}));
+  EXPECT_EQ(headings(chart_of(figures[1]).panels[0]), (Headings{{"<b>double</b>", 13}, {"<b>float</b>", 1}}));
   EXPECT_EQ(chart_of(figures[0]).panels[0].x.range.upper, chart_of(figures[1]).panels[0].x.range.upper);
+}
+
+TEST(RateFigures, NeedNoHeadingWhereThatIsAllThatDiffers) {
+  Performance p = support::demo_performance();
+  std::erase_if(p.steps, [](const StepRate& s) {
+    return s.scheme != "ugimp" || s.particles != 10000 || s.threads != 1 || s.scene != "footing";
+  });
+  const RowPanel panel = chart_of(rate_figures(p).at(0)).panels.at(0);
+  ASSERT_EQ(panel.rows.size(), 2U);
+  EXPECT_EQ(panel.rows[0].name, "double");
+  EXPECT_EQ(panel.rows[1].name, "float");
 }
 
 TEST(SizeFigure, HasACurveASchemeAndNumberOfThreads) {
@@ -159,10 +198,12 @@ TEST(HistoryFigures, PutBeforeAndAfterSideBySide) {
   const auto figures = history_figures(before, after);
   ASSERT_EQ(figures.size(), 2U) << "the footing in two charts; the block was not measured before";
   const RowChart& chart = chart_of(figures[0]);
-  ASSERT_EQ(chart.panels[0].rows[2].bars.size(), 2U);
-  EXPECT_DOUBLE_EQ(chart.panels[0].rows[2].bars[0].value, 20.0);
-  EXPECT_DOUBLE_EQ(chart.panels[0].rows[2].bars[1].value, 40.0);
-  EXPECT_TRUE(std::isnan(chart.panels[0].rows[2].bars[0].mark));
+  const Row row = bar_rows(chart.panels[0]).at(2);
+  ASSERT_EQ(row.bars.size(), 2U);
+  EXPECT_DOUBLE_EQ(row.bars[0].value, 20.0);
+  EXPECT_DOUBLE_EQ(row.bars[1].value, 40.0);
+  EXPECT_TRUE(std::isnan(row.bars[0].mark));
+  EXPECT_DOUBLE_EQ(row.bars[1].mark, 20.0);
   EXPECT_NE(chart.series[0].label.find("fedc9876"), std::string::npos);
   EXPECT_NE(chart.series[1].label.find("0123abcd"), std::string::npos);
   EXPECT_NE(figures[0].id, figures[1].id);
@@ -172,14 +213,14 @@ TEST(RowCharts, KeepBarsInsideAndValuesClearOfThem) {
   for (const PerformanceFigure& figure : rate_figures(support::demo_performance())) {
     const Picture picture = draw(figure);
     const Layout::Panel& panel = picture.layout.panels.at(0);
-    const auto& rows = chart_of(figure).panels[0].rows;
+    const auto rows = bar_rows(chart_of(figure).panels[0]);
     ASSERT_EQ(panel.points.size(), rows.size());
     ASSERT_EQ(panel.annotations.size(), rows.size());
     EXPECT_EQ(panel.outside, 0);
     for (std::size_t i = 0; i < rows.size(); ++i) {
       EXPECT_TRUE(panel.frame.contains(panel.points[i]));
       EXPECT_GT(panel.annotations[i].left, panel.points[i].x);
-      EXPECT_LT(panel.annotations[i].right, picture.canvas.width());
+      EXPECT_LT(panel.annotations[i].right, panel.frame.right);
       if (i > 0) {
         EXPECT_FALSE(panel.annotations[i].intersects(panel.annotations[i - 1]));
       }
@@ -192,7 +233,7 @@ TEST(RowCharts, KeepBarsInsideAndValuesClearOfThem) {
 TEST(RowCharts, LengthsFollowValues) {
   const auto figures = rate_figures(support::demo_performance());
   const Layout::Panel panel = draw(figures[0]).layout.panels[0];
-  const auto& rows = chart_of(figures[0]).panels[0].rows;
+  const auto rows = bar_rows(chart_of(figures[0]).panels[0]);
   const auto length = [&](std::size_t i) { return panel.points[i].x - panel.frame.left; };
   EXPECT_NEAR(length(2) / length(14), rows[2].bars[0].value / rows[14].bars[0].value, 1e-9);
 }

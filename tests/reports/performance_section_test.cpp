@@ -101,7 +101,7 @@ TEST(PerformanceSection, ShowsTargetsMetAndNotMet) {
   const std::string cells = html.substr(row, html.find("</tr>", row) - row);
   EXPECT_EQ(
       cells,
-      "<tr><td>cpGIMP</td><td class=\"n\">10</td><td class=\"n\">9 – 11</td><td class=\"n\">20</td>"
+      "<tr><td>cpGIMP</td><td class=\"n\">10</td><td class=\"n\">9\u00a0–\u00a011</td><td class=\"n\">20</td>"
       "<td><span class=\"chip contrary\">NOT MET</span></td><td class=\"n\">200</td><td class=\"n\">400</td>"
       "<td class=\"n\">25 %</td><td class=\"n\">12 %</td>");
 }
@@ -129,8 +129,9 @@ TEST(PerformanceSection, ShowsRunsLimitsKernelsMemoryAndStartUp) {
           "<td class=\"n\">2.00×10<sup>7</sup></td><td class=\"n\">2.50</td><td class=\"n\">25</td>"
           "<td>reached time</td></tr>"));
   EXPECT_TRUE(
-      has(html, "<td>triad in L2</td><td class=\"n\">80</td><td class=\"n\">72 – 88</td><td>GB/s</td>"));
-  EXPECT_TRUE(has(html, "<td class=\"n\">100</td><td class=\"n\">90 – 110</td><td>Gflop/s</td>"));
+      has(html,
+          "<td>triad in L2</td><td class=\"n\">80</td><td class=\"n\">72\u00a0–\u00a088</td><td>GB/s</td>"));
+  EXPECT_TRUE(has(html, "<td class=\"n\">100</td><td class=\"n\">90\u00a0–\u00a0110</td><td>Gflop/s</td>"));
   EXPECT_TRUE(has(html, "<code>weights/gimp/float64</code></td><td class=\"n\">200</td>"));
   EXPECT_TRUE(has(html,
                   "<td>footing, cpGIMP, Mohr–Coulomb, double</td><td class=\"n\">1\u202f000\u202f000</td>"
@@ -190,7 +191,7 @@ TEST(PerformanceSection, ComparesWithEarlierMeasurements) {
   EXPECT_TRUE(has(html,
                   "<tr><td>MPM, double, 10\u00a0000 particles, 1 thread</td><td class=\"n\">20</td><td "
                   "class=\"n\">40</td>"
-                  "<td class=\"n\">2</td><td class=\"n\">1.64 – 2.44</td></tr>"));
+                  "<td class=\"n\">2</td><td class=\"n\">1.64\u00a0–\u00a02.44</td></tr>"));
   EXPECT_TRUE(has(html,
                   "<td class=\"n\">1</td><td class=\"n\">30</td><td class=\"n\">10</td>"
                   "<td class=\"n\">20\u202f000</td><td class=\"n\">20\u202f000</td><td class=\"n\">3</td>"));
