@@ -270,10 +270,7 @@ int report(const Arguments& arguments, const ReportWriter& reports) {
 /// Whether a file of measurements is sound, and this very program could have made it on this machine.
 int check_performance(const Arguments& arguments, const ReportWriter& reports) {
   const std::optional<MeasuredBy> by = reports.read_performance(arguments.performance);
-  const std::string revision = build_facts().revision;
-  const bool known = revision != "unknown" && !revision.ends_with("-dirty");
-  const bool current = by && known && by->revision == revision && by->processor == processor_name() &&
-                       by->cores == core_count();
+  const bool current = by && still_holds(*by, {build_facts().revision, processor_name(), core_count()});
   if (by)
     fmt::print("measured at revision {} on {}, {} cores: {}\n", by->revision, by->processor, by->cores,
                current ? "current" : "not current");
@@ -338,6 +335,11 @@ struct CommandLine {
 };
 
 }  // namespace
+
+bool still_holds(const MeasuredBy& then, const MeasuredBy& now) {
+  const bool known = now.revision != "unknown" && !now.revision.ends_with("-dirty");
+  return known && then.revision == now.revision && then.processor == now.processor && then.cores == now.cores;
+}
 
 int command_line(int argc, char** argv, const ReportWriter& reports) {
   try {

@@ -23,6 +23,10 @@ struct MeasuredBy {
   int cores = 0;
 };
 
+/// Whether measurements of `then` need not be repeated by `now`: processor, cores and revision are the same, and
+/// the revision tells all of the source, neither unknown nor modified.
+bool still_holds(const MeasuredBy& then, const MeasuredBy& now);
+
 /// What the program needs of the reports.
 struct ReportWriter {
   /// Reads the measurements that the report is to show, before anything runs; gives who made the latest,
