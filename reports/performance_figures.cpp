@@ -122,7 +122,7 @@ std::vector<std::string> scenes_of(const Items& items, SceneOf scene_of) {
   return scenes;
 }
 
-/// For bars that reach up to `largest`, with room for the value behind the longest.
+/// For bars that reach up to `largest`, with room for the column of values.
 Range bar_range(double largest) { return {0.0, largest > 0.0 ? 1.2 * largest : 1.0}; }
 
 int decimals_for(double largest) { return largest < 10.0 ? 2 : largest < 1000.0 ? 1 : 0; }
@@ -330,8 +330,10 @@ Look roof_look(std::size_t n) {
 }
 
 /// Straight lines up to the peak, and the peak from where the fastest of them meets it; all inside the axes.
-std::vector<PlotCurve> roofs(const std::vector<const Limit*>& bandwidths, double peak, const Panel& panel) {
+std::vector<PlotCurve> roofs(const std::vector<const Limit*>& bandwidths, const Limit& highest,
+                             const Panel& panel) {
   std::vector<PlotCurve> curves;
+  const double peak = highest.value.median / giga;
   double fastest = 0.0;
   for (const Limit* limit : bandwidths) {
     const double bandwidth = limit->value.median / giga;
@@ -343,7 +345,7 @@ std::vector<PlotCurve> roofs(const std::vector<const Limit*>& bandwidths, double
                       {left * bandwidth, peak},
                       0});
   }
-  curves.push_back({fmt::format("peak of fused multiply-adds, {:.3g} Gflop/s", peak),
+  curves.push_back({fmt::format("{}, {:.3g} Gflop/s", escaped(highest.title), peak),
                     roof_look(0),
                     {peak / fastest, panel.x.range.upper},
                     {peak, peak},
@@ -530,18 +532,22 @@ std::optional<PerformanceFigure> roofline_figure(const Performance& performance)
   for (const StepRate& step : performance.steps)
     if (step.threads == 1 && step.bytes && step.flops) steps.push_back(&step);
   if (steps.empty() || bandwidths.empty() || peaks.empty()) return std::nullopt;
-  double peak = 0.0, slowest = INFINITY, least = INFINITY, most = 0.0;
-  for (const Limit* limit : peaks) peak = std::max(peak, limit->value.median / giga);
+  const Limit& highest = **std::max_element(peaks.begin(), peaks.end(), [](const Limit* a, const Limit* b) {
+    return a->value.median < b->value.median;
+  });
+  const double peak = highest.value.median / giga;
+  double slowest = INFINITY, fastest = peak, least = INFINITY, most = 0.0;
   for (const Limit* limit : bandwidths) most = std::max(most, peak / (limit->value.median / giga));
   for (const StepRate* step : steps) {
     slowest = std::min(slowest, arithmetic_rate(*step));
+    fastest = std::max(fastest, arithmetic_rate(*step));
     least = std::min(least, intensity(*step));
     most = std::max(most, intensity(*step));
   }
   Panel panel;
   panel.x = {"arithmetic intensity [flop/B]", Scale::logarithmic, {least / 3.0, most * 2.0}, {}, false};
-  panel.y = {"arithmetic done [Gflop/s]", Scale::logarithmic, {slowest / 3.0, peak * 2.0}, {}, false};
-  panel.curves = roofs(bandwidths, peak, panel);
+  panel.y = {"arithmetic done [Gflop/s]", Scale::logarithmic, {slowest / 3.0, fastest * 2.0}, {}, false};
+  panel.curves = roofs(bandwidths, highest, panel);
   for (PlotCurve& curve : roofline_points(steps)) panel.curves.push_back(std::move(curve));
   Plot plot;
   plot.width = 400.0;
@@ -592,7 +598,7 @@ std::vector<PerformanceFigure> history_figures(const Performance& before, const 
       return both;
     };
     const auto charts = in_charts(
-        "history-" + before.full_revision() + "-" + scene, title_of(scene, names.common),
+        "history-" + before.file.stem().string() + "-" + scene, title_of(scene, names.common),
         rows_under_headings(steps, bars), [&](RowChart& chart, std::string& caption) {
           Look look = look_of_series(1);
           chart.series.push_back({"before: revision " + escaped(before.full_revision()), look});

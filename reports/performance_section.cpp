@@ -63,7 +63,7 @@ void set_facts(PageData& page, const Performance& measured, const vv::CampaignVe
   for (const auto& [key, value] : std::vector<std::pair<std::string, std::string>>{
            {"repetitions", std::to_string(measured.repetitions)},
            {"seconds_each", number_markup(measured.seconds_each, 0)},
-           {"noise", number_markup(100.0 * measured.noise, 2) + " %"},
+           {"noise", number_markup(100.0 * measured.noise, 2) + "\u00a0%"},
            {"revision", measured.full_revision()},
            {"date", measured.date},
            {"processor", measured.processor},

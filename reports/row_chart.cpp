@@ -17,7 +17,7 @@ constexpr double bar_height = 7.5;
 constexpr double row_padding = 4.0;  // between the bars of two rows
 constexpr double panel_gap = 14.0;
 constexpr double title_room = 17.0;
-constexpr double value_gap = 3.5;  // between what is drawn and the value behind it
+constexpr double value_gap = 3.5;  // between a value and the frame
 
 const Color grid_color{0.905, 0.905, 0.905, 1.0};
 const Stroke mark_stroke{ink, 2.0, {}};
@@ -79,7 +79,6 @@ void draw_outline(Canvas& canvas, const Rectangle& f) {
 void draw_bar(Canvas& canvas, const Placed& placed, const RowBar& bar, double middle, Layout::Panel& layout) {
   const Rectangle& f = placed.frame;
   const std::string text = value_text(*placed.panel, bar);
-  double end = f.left;  // of all that is drawn
   if (std::isfinite(bar.value)) {
     const Rectangle box{f.left, middle - bar_height / 2, std::min(placed.at(bar.value), f.right),
                         middle + bar_height / 2};
@@ -92,7 +91,6 @@ void draw_bar(Canvas& canvas, const Placed& placed, const RowBar& bar, double mi
       draw_whisker(canvas, placed.at(bar.low), placed.at(bar.high), middle, 5.0, whisker_stroke);
     canvas.unclip();
     layout.points.push_back({box.right, middle});
-    end = std::max(box.right, std::isfinite(bar.high) ? placed.at(bar.high) : box.right);
   } else {
     ++layout.not_finite;
   }
@@ -101,13 +99,12 @@ void draw_bar(Canvas& canvas, const Placed& placed, const RowBar& bar, double mi
     canvas.clip(f);
     canvas.line({{x, middle - bar_slot / 2}, {x, middle + bar_slot / 2}}, mark_stroke);
     canvas.unclip();
-    // A mark close behind the bar would stand in the value.
-    if (x > end - 2.0 && x < end + value_gap + text_width(text) + 2.0) end = x;
   }
-  const double left = std::min(end + value_gap, f.right - text_width(text) - value_gap);
-  canvas.rectangle({left - 1.0, middle - 4.5, left + text_width(text) + 1.0, middle + 4.5}, white);
-  canvas.text({left, middle}, text, text_style(Horizontal::left, Vertical::middle));
-  layout.annotations.push_back({left, middle - 4.5, left + text_width(text), middle + 4.5});
+  // All values stand in one column: behind a bar, one could be taken for that of a mark.
+  const double right = f.right - value_gap, left = right - text_width(text);
+  canvas.rectangle({left - 1.0, middle - 4.5, right + 1.0, middle + 4.5}, white);
+  canvas.text({right, middle}, text, text_style(Horizontal::right, Vertical::middle));
+  layout.annotations.push_back({left, middle - 4.5, right, middle + 4.5});
 }
 
 Layout::Panel draw_panel(Canvas& canvas, const Placed& placed, const std::string& tag) {

@@ -33,10 +33,10 @@ struct RowLine {
 
 struct RowPanel {
   std::string title;  ///< markup
-  Axis x;             ///< linear; its values are written inside the frame, for which it should leave room
+  Axis x;  ///< linear; its values stand in a column inside the right edge, for which it should leave room
   std::vector<Row> rows;
   std::vector<RowLine> lines;
-  int decimals = 1;  ///< of the value written behind each bar
+  int decimals = 1;  ///< of the values
 };
 
 /// Level bars with long names: panels one below the other, all with the same room for names.
@@ -49,8 +49,8 @@ struct RowChart {
 };
 
 /// Draws a chart; the height follows from the content. In the layout, the points of a panel are the ends of
-/// its bars in the order of the rows, its annotations the values written behind them. A bar that the axis
-/// cuts is counted as outside, one without a value as not finite. Throws CanvasError.
+/// its bars in the order of the rows, its annotations the values written at the right edge. A bar that the
+/// axis cuts is counted as outside, one without a value as not finite. Throws CanvasError.
 Picture draw(const RowChart& chart, double pixels_per_point = 10.0 / 3.0);
 
 }  // namespace mpm::reports

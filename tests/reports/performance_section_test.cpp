@@ -66,7 +66,7 @@ TEST(PerformanceSection, TellsWhereItWasMeasured) {
   for (const char* fact :
        {"<code>0123abcd</code></dd>", "2000-01-02T03:04:05Z", "Test processor, 2 cores</dd>",
         "Test 1.0, all instructions of the machine</dd>", "median of 5 repetitions", "0.25 s",
-        "typically 10 % of the rate", "<code>demo.json</code>"})
+        "typically 10\u00a0% of the rate", "<code>demo.json</code>"})
     EXPECT_TRUE(has(html, fact)) << fact;
   EXPECT_FALSE(has(html, "class=\"bad\""));
 }
