@@ -5,12 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <mustache.hpp>
 #include <set>
 #include <string_view>
 
 #include "reports/canvas.hpp"
 #include "reports/figures.hpp"
+#include "reports/page_data.hpp"
+#include "reports/performance_section.hpp"
 #include "vv/norms.hpp"
 
 namespace mpm::reports {
@@ -20,58 +21,11 @@ std::string_view document_style();
 
 namespace {
 
-using kainjow::mustache::data;
+using data = PageData;
 using Parameters = std::vector<std::pair<std::string, vv::Json>>;
-
-std::string base64(const std::string& bytes) {
-  static constexpr std::string_view alphabet =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    unsigned group = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      group = group << 8U | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0U);
-    for (std::size_t k = 0; k < 4; ++k)
-      text += k <= std::min<std::size_t>(3, bytes.size() - i) ? alphabet[group >> (18 - 6 * k) & 63U] : '=';
-  }
-  return text;
-}
-
-data list() { return data(data::type::list); }
-
-data object(const std::vector<std::pair<std::string, std::string>>& entries) {
-  data result(data::type::object);
-  for (const auto& [key, value] : entries) {
-    // An absent key, not an empty text, switches a section off.
-    if (!value.empty())
-      result.set(key, value);
-    else
-      result.set(key, data(data::type::bool_false));
-  }
-  return result;
-}
-
-void set_list(data& target, const std::string& name, const data& entries) {
-  target.set(name, entries);
-  target.set("has_" + name, !entries.is_empty_list());
-}
-
-data flag(bool on) { return data(on ? data::type::bool_true : data::type::bool_false); }
-
-std::string count_markup(std::int64_t count) {
-  std::string digits = std::to_string(count);
-  for (auto at = static_cast<int>(digits.size()) - 3; at > (count < 0 ? 1 : 0); at -= 3)
-    digits.insert(static_cast<std::size_t>(at), "\u202f");
-  return digits;
-}
 
 // ---- statuses
 // ---------------------------------------------------------------------------------------------------
-
-std::string chip(const char* kind, const char* word) {
-  return fmt::format("<span class=\"chip {}\">{}</span>", kind, word);
-}
 
 std::string chip_of(vv::CaseStatus status) {
   switch (status) {
@@ -262,12 +216,6 @@ data gate_tallies(const std::vector<PlacedGate>& gates) {
 
 // ---- tables of numbers
 // ------------------------------------------------------------------------------------------
-
-data text_cells(const std::vector<std::string>& texts) {
-  data cells = list();
-  for (const std::string& text : texts) cells << object({{"text", text}});
-  return cells;
-}
 
 std::string metric_cell(const vv::RunVerdict& run, const std::string& metric) {
   const auto found = run.metrics.find(metric);
@@ -700,7 +648,9 @@ std::vector<DrawnFigure> draw_figures(const vv::CampaignVerdict& verdict) {
   return figures;
 }
 
-std::string report_html(const vv::CampaignVerdict& verdict, const std::vector<DrawnFigure>& figures) {
+std::string report_html(const vv::CampaignVerdict& verdict, const std::vector<DrawnFigure>& figures,
+                        const PerformanceEvidence& performance,
+                        const std::vector<DrawnPerformanceFigure>& performance_figures) {
   data page(data::type::object);
   page.set("style", std::string(document_style()));
   set_verdict(page, verdict);
@@ -721,27 +671,28 @@ std::string report_html(const vv::CampaignVerdict& verdict, const std::vector<Dr
   page.set("case_sections", sections);
   page.set("commands", commands);
   set_runs_across_cases(page, verdict);
+  page.set("performance", performance_section(performance, verdict, performance_figures, figure_number));
   page.set("glossary", glossary());
-  kainjow::mustache::mustache document{std::string(document_template())};
-  document.set_custom_escape(escaped);
-  const std::string html = document.render(page);
-  if (!document.error_message().empty())
-    throw CanvasError("the report's template is broken: " + document.error_message());
-  return html;
+  return rendered(document_template(), page);
 }
 
-void write_report(const vv::CampaignVerdict& verdict, const std::filesystem::path& directory) {
+void write_report(const vv::CampaignVerdict& verdict, const std::filesystem::path& directory,
+                  const PerformanceEvidence& performance) {
   const std::vector<DrawnFigure> figures = draw_figures(verdict);
+  const std::vector<DrawnPerformanceFigure> performance_figures = draw_performance_figures(performance);
   std::filesystem::create_directories(directory / "figures");
   std::string failures;
-  for (const DrawnFigure& figure : figures) {
+  const auto write = [&](const DrawnFigure& figure) {
     const std::string name = figure.case_id + "-" + figure.figure_id;
     if (figure.failure.empty())
       vv::write_atomically(directory / "figures" / (name + ".png"), figure.png);
     else
       failures += (failures.empty() ? "" : "; ") + name + ": " + figure.failure;
-  }
-  vv::write_atomically(directory / "report.html", report_html(verdict, figures));
+  };
+  for (const DrawnFigure& figure : figures) write(figure);
+  for (const DrawnPerformanceFigure& figure : performance_figures) write(figure.drawn);
+  vv::write_atomically(directory / "report.html",
+                       report_html(verdict, figures, performance, performance_figures));
   if (!failures.empty()) throw CanvasError("figures could not be drawn: " + failures);
 }
 

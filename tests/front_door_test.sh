@@ -63,7 +63,7 @@ case $1 in
     for program in reports/mpmvv benchmarks/mpmvv_benchmarks; do
       [ -e "$2/$program" ] && continue
       echo 'ninja explain: output a.cpp.o does not exist' >&2
-      printf '#!/bin/sh\necho "program in $PWD of $MPMVV_ROOT"\nfor a; do echo "<$a>"; done\nexit ${FAKE_VERDICT:-0}\n' >"$2/$program"
+      { printf '#!/bin/sh\nplace="%s"\n' "$place"; cat "$place/fake_${program##*/}"; } >"$2/$program"
       /bin/chmod +x "$2/$program"
     done
     rm "$place/building" ;;
@@ -75,6 +75,29 @@ echo '100% tests passed'
 exit "${FAKE_VERDICT:-0}"
 END
 }
+
+# The program; it takes a file of measurements for what its first line says.
+cat >"$place/fake_mpmvv" <<'END'
+if [ "$1" = check-performance ]; then
+  what=missing
+  [ -e "$2" ] && read -r what <"$2"
+  case $what in current) exit 0 ;; other) exit 1 ;; esac
+  echo "mpmvv: $2: $what" >&2
+  exit 2
+fi
+echo "program in $PWD of $MPMVV_ROOT"
+for a; do echo "<$a>"; done
+exit ${FAKE_VERDICT:-0}
+END
+
+# The benchmarks; they write a file of measurements where they are told to.
+cat >"$place/fake_mpmvv_benchmarks" <<'END'
+echo "benchmarks $*" >>"$place/calls"
+for a; do echo "<$a>"; done
+if [ "$1" = --quick ] && [ "$2" = --json ]; then echo "${FAKE_MEASUREMENT:-current}" >"$3"; fi
+echo 'last words'
+exit ${FAKE_BENCHMARK:-0}
+END
 
 # --- checks ---------------------------------------------------------------------------------------------------------
 
@@ -126,6 +149,61 @@ about="the program's exit code is the front door's"
 for verdict in 0 1 2; do
   FAKE_VERDICT=$verdict open_door report; expect_code "$verdict"
 done
+
+about='a report is measured first, and told what came of it'
+set_up
+open_door report; expect_code 0
+measurements="$checkout/reports/out/performance.json"
+expect_in calls "benchmarks --quick --json $measurements"; expect_in calls '--target mpmvv_program mpmvv_benchmarks'
+expect_in err 'mpmvv: measuring the speed'
+printf '<%s>\n' report --performance "$measurements" >"$place/expected"
+sed 1d "$place/out" | cmp -s - "$place/expected" || wrong 'the arguments are not these'
+
+about='current measurements are not repeated, others are'
+open_door report; expect_silence; expect_in out "<$measurements>"
+[ "$(grep -c '^benchmarks' "$calls")" = 1 ] || wrong 'it measured again'
+for what in other bad; do
+  echo "$what" >"$measurements"
+  : >"$calls"
+  open_door report; expect_code 0; expect_in calls 'benchmarks --quick'; expect_in out "<$measurements>"
+done
+
+about='earlier measurements are compared with'
+mkdir -p "$checkout/benchmarks/history"
+open_door report; expect_in out '<--performance-history>'; expect_in out "<$checkout/benchmarks/history>"
+
+about='measurements lie beside the report'
+for form in "--out $place/there" "--out=$place/there"; do
+  set_up
+  rm -rf "$place/there"
+  open_door report --quick $form --threads 1; expect_code 0
+  expect_in calls "benchmarks --quick --json $place/there/performance.json"
+  expect_in out '<--quick>'; expect_in out "<$place/there/performance.json>"
+done
+
+about='a report without measurements is a report'
+for verdict in 0 1 2; do
+  set_up
+  FAKE_BENCHMARK=3 FAKE_VERDICT=$verdict open_door report; expect_code "$verdict"
+  expect_in err 'the speed could not be measured'
+  expect_in out '<--performance-failure>'; expect_not_in out '<--performance>'
+  expect_in out '<the benchmark program ended with exit code 3; its last line: last words>'
+  [ ! -e "$measurements" ] || wrong 'what a failed measurement wrote is left'
+done
+set_up
+FAKE_MEASUREMENT=nonsense open_door report; expect_code 0
+expect_in out "<mpmvv: $measurements: nonsense>"; expect_not_in out '<--performance>'
+set_up
+: >"$checkout/reports"
+open_door report; expect_code 0; expect_in out "<cannot write to $checkout/reports/out>"; expect_not_in calls '--quick --json'
+
+about='measurements of the user are taken, and nothing is measured for bad arguments'
+set_up
+open_door report --performance mine.json; expect_code 0
+printf '<%s>\n' report --performance mine.json >"$place/expected"
+sed 1d "$place/out" | cmp -s - "$place/expected" || wrong 'the arguments are not the same'
+for bad in --help --fast --out --threads; do open_door report "$bad"; expect_in out "<$bad>"; done
+expect_not_in calls 'benchmarks --quick'
 
 about='tests and benchmarks'
 set_up

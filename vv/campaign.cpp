@@ -22,6 +22,7 @@
 #include <thread>
 
 #include "vv/gates.hpp"
+#include "vv/machine.hpp"
 #include "vv/revision.hpp"
 
 namespace mpm::vv {
@@ -390,16 +391,6 @@ class Campaign {
 };
 
 // ---- provenance ----
-
-std::string processor_name() {
-  std::ifstream stream("/proc/cpuinfo");
-  for (std::string line; std::getline(stream, line);) {
-    const auto colon = line.find(": ");
-    if (line.starts_with("model name") && colon != std::string::npos) return line.substr(colon + 2);
-  }
-  utsname system{};
-  return ::uname(&system) == 0 ? system.machine : "unknown";
-}
 
 std::string host_name() {
   utsname system{};

@@ -9,9 +9,9 @@
 #include <cmath>
 #include <cstdlib>
 #include <optional>
-#include <thread>
 
 #include "vv/campaign.hpp"
+#include "vv/machine.hpp"
 #include "vv/revision.hpp"
 
 namespace mpm::vv {
@@ -27,13 +27,12 @@ void complain(std::string text) {
   fmt::print(stderr, "mpmvv: {}\n", text);
 }
 
-int hardware_threads() { return static_cast<int>(std::max(1u, std::thread::hardware_concurrency())); }
-
 struct Arguments {
   std::vector<std::string> cases;
   std::string out;
-  int threads = hardware_threads();
+  int threads = core_count();
   bool quick = false;
+  PerformanceFiles performance;
 };
 
 // ---- cases ----
@@ -215,15 +214,16 @@ fs::path writable_directory(const fs::path& wanted) {
 }
 
 int run_and_report(const std::vector<Case>& cases, const Arguments& arguments, const fs::path& wanted_out,
-                   const WriteReport& write_report) {
+                   const ReportWriter& reports) {
   const fs::path out = writable_directory(wanted_out);
+  if (reports.read_performance) reports.read_performance(arguments.performance);
   const CampaignVerdict verdict =
       run_campaign(cases, {.out = out, .threads = arguments.threads, .quick = arguments.quick});
   constexpr auto replace = Json::error_handler_t::replace;
   write_atomically(out / "results.json", to_json(verdict).dump(2, ' ', false, replace) + "\n");
   print_gates(verdict);
   print_counts(verdict, out);
-  if (write_report) write_report(verdict, out);
+  if (reports.write) reports.write(verdict, out);
   return verdict.failed() ? gate_failed : all_good;
 }
 
@@ -250,13 +250,13 @@ int list() {
   return good ? all_good : bad_input;
 }
 
-int run(const Arguments& arguments, const WriteReport& write_report) {
+int run(const Arguments& arguments, const ReportWriter& reports) {
   const auto cases = read_all(arguments.cases, file_of);
   if (!cases) return bad_input;
-  return run_and_report(*cases, arguments, arguments.out.empty() ? "mpmvv-out" : arguments.out, write_report);
+  return run_and_report(*cases, arguments, arguments.out.empty() ? "mpmvv-out" : arguments.out, reports);
 }
 
-int report(const Arguments& arguments, const WriteReport& write_report) {
+int report(const Arguments& arguments, const ReportWriter& reports) {
   auto cases = read_all(shipped_files(), [](const fs::path& file) { return file; });
   if (!cases) return bad_input;
   // What the paper shows comes first, in the paper's order.
@@ -264,7 +264,18 @@ int report(const Arguments& arguments, const WriteReport& write_report) {
     return std::pair(a.figure_of_paper.empty(), a.figure_of_paper) < std::pair(b.figure_of_paper.empty(), b.figure_of_paper);
   });
   const fs::path out = arguments.out.empty() ? project_root() / "reports" / "out" : fs::path(arguments.out);
-  return run_and_report(*cases, arguments, out, write_report);
+  return run_and_report(*cases, arguments, out, reports);
+}
+
+/// Whether a file of measurements is sound, and this very program could have made it on this machine.
+int check_performance(const Arguments& arguments, const ReportWriter& reports) {
+  const std::optional<MeasuredBy> by = reports.read_performance(arguments.performance);
+  const bool current = by && still_holds(*by, {build_facts().revision, processor_name(), core_count()});
+  if (by)
+    fmt::print("measured at revision {} on {}, {} cores: {}\n", by->revision, by->processor, by->cores,
+               current ? "current" : "not current");
+  std::fflush(stdout);
+  return current ? all_good : gate_failed;
 }
 
 int of_the_front_door(const char* command) {
@@ -282,6 +293,10 @@ struct CommandLine {
   CLI::App* list = app.add_subcommand("list", "Show the shipped cases, one line each");
   CLI::App* run = app.add_subcommand("run", "Run cases and judge them");
   CLI::App* report = app.add_subcommand("report", "Run and judge every shipped case and write the report");
+  CLI::App* check_performance =
+      app.add_subcommand("check-performance",
+                         "Read a file of measurements; exit code 0 if it is of this revision and machine, "
+                         "1 if it is not, 2 if it is bad");
   CLI::App* test = app.add_subcommand("test", "Run every test (ctest)");
   CLI::App* bench = app.add_subcommand("bench", "Measure the kernels (Google Benchmark)");
 
@@ -295,6 +310,14 @@ struct CommandLine {
     report->add_option("--out", arguments.out, "The same (default: reports/out of the project)");
     report->add_flag("--quick", arguments.quick,
                      "Leave out the slow cases; the report shows them as not run");
+    report->add_option("--performance", arguments.performance.file, "Show these measurements of speed (JSON)");
+    report
+        ->add_option("--performance-history", arguments.performance.history,
+                     "Compare them with the earlier ones in this directory")
+        ->needs(report->get_option("--performance"));
+    report->add_option("--performance-failure", arguments.performance.failure,
+                       "Say that measuring failed, and why");
+    check_performance->add_option("file", arguments.performance.file, "Measurements of speed (JSON)")->required();
     for (CLI::App* command : {run, report}) {
       command->add_option("--threads", arguments.threads, "Runs at a time (default: all cores)")
           ->check(CLI::Range(1, 1024));
@@ -302,17 +325,23 @@ struct CommandLine {
     for (CLI::App* command : {test, bench}) command->allow_extras()->prefix_command();
   }
 
-  int dispatch(const WriteReport& write_report) const {
+  int dispatch(const ReportWriter& reports) const {
     if (list->parsed()) return vv::list();
-    if (run->parsed()) return vv::run(arguments, write_report);
-    if (report->parsed()) return vv::report(arguments, write_report);
+    if (run->parsed()) return vv::run(arguments, reports);
+    if (report->parsed()) return vv::report(arguments, reports);
+    if (check_performance->parsed()) return vv::check_performance(arguments, reports);
     return of_the_front_door(test->parsed() ? "test" : "bench");
   }
 };
 
 }  // namespace
 
-int command_line(int argc, char** argv, const WriteReport& write_report) {
+bool still_holds(const MeasuredBy& then, const MeasuredBy& now) {
+  const bool known = now.revision != "unknown" && !now.revision.ends_with("-dirty");
+  return known && then.revision == now.revision && then.processor == now.processor && then.cores == now.cores;
+}
+
+int command_line(int argc, char** argv, const ReportWriter& reports) {
   try {
     CommandLine line;
     try {
@@ -322,7 +351,7 @@ int command_line(int argc, char** argv, const WriteReport& write_report) {
       complain(std::string(error.what()) + " (see mpmvv --help)");
       return bad_input;
     }
-    return line.dispatch(write_report);
+    return line.dispatch(reports);
   } catch (const std::exception& error) {
     complain(error.what());
     return bad_input;

@@ -9,6 +9,8 @@
 #include <optional>
 
 #include "tests/support/scratch_directory.hpp"
+#include "vv/machine.hpp"
+#include "vv/revision.hpp"
 
 namespace mpm::vv {
 namespace {
@@ -21,6 +23,7 @@ struct Answer {
   std::string out, err;
   std::optional<CampaignVerdict> reported;
   fs::path reported_in;
+  std::optional<PerformanceFiles> measurements;  ///< that were read
 
   long error_lines() const { return std::count(err.begin(), err.end(), '\n'); }
 };
@@ -47,6 +50,9 @@ class CommandLineTest : public testing::Test {
   fs::path cases() const { return scratch_.path() / "vv" / "cases"; }
   fs::path user() const { return scratch_.path() / "user"; }
   const fs::path& root() const { return scratch_.path(); }
+
+  /// Whoever made any measurements that are read.
+  MeasuredBy measured_by_{build_facts().revision, processor_name(), core_count()};
 
   static Json case_text(const std::string& id) {
     return Json::parse(R"({
@@ -81,18 +87,24 @@ class CommandLineTest : public testing::Test {
     return Json::parse(stream);
   }
 
-  static Answer ask(std::vector<std::string> words) {
+  Answer ask(std::vector<std::string> words) const {
     words.insert(words.begin(), "mpmvv");
     std::vector<char*> argv;
     for (std::string& word : words) argv.push_back(word.data());
     Answer answer{};
     testing::internal::CaptureStdout();
     testing::internal::CaptureStderr();
+    const auto read = [&](const PerformanceFiles& files) -> std::optional<MeasuredBy> {
+      if (files.file == "bad.json") throw std::runtime_error("bad.json: /steps: expected an array");
+      answer.measurements = files;
+      return files.file.empty() ? std::nullopt : std::optional(measured_by_);
+    };
+    const auto write = [&](const CampaignVerdict& verdict, const fs::path& directory) {
+      answer.reported = verdict;
+      answer.reported_in = directory;
+    };
     answer.code = command_line(static_cast<int>(argv.size()), argv.data(),
-                               [&](const CampaignVerdict& verdict, const fs::path& directory) {
-                                 answer.reported = verdict;
-                                 answer.reported_in = directory;
-                               });
+                               {.read_performance = read, .write = write});
     answer.out = testing::internal::GetCapturedStdout();
     answer.err = testing::internal::GetCapturedStderr();
     return answer;
@@ -283,13 +295,62 @@ TEST_F(CommandLineTest, AReportThatCannotBeWrittenIsAnErrorAfterTheResults) {
   for (std::string& word : words) argv.push_back(word.data());
   testing::internal::CaptureStdout();
   testing::internal::CaptureStderr();
-  const int code = command_line(3, argv.data(), [](const CampaignVerdict&, const fs::path&) {
+  const auto fail = [](const CampaignVerdict&, const fs::path&) {
     throw std::runtime_error("no font\nat all");
-  });
+  };
+  const int code = command_line(3, argv.data(), {.read_performance = nullptr, .write = fail});
   testing::internal::GetCapturedStdout();
   EXPECT_EQ(code, 2);
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "mpmvv: no font at all\n");
   EXPECT_TRUE(fs::exists(user() / "mpmvv-out" / "results.json"));
+}
+
+TEST_F(CommandLineTest, MeasurementsAreReadBeforeAnythingRuns) {
+  write(cases() / "fine.json", case_text("fine"));
+  const Answer good = ask({"report", "--out", "out", "--performance", "m.json", "--performance-history", "old"});
+  ASSERT_TRUE(good.measurements);
+  EXPECT_EQ(good.measurements->file, "m.json");
+  EXPECT_EQ(good.measurements->history, "old");
+  EXPECT_TRUE(good.reported);
+  const Answer bad = ask({"report", "--out", "out", "--performance", "bad.json"});
+  EXPECT_EQ(bad.code, 2);
+  EXPECT_EQ(bad.err, "mpmvv: bad.json: /steps: expected an array\n");
+  EXPECT_TRUE(bad.out.empty());
+  EXPECT_FALSE(bad.reported);
+  EXPECT_EQ(ask({"report", "--performance-history", "old"}).code, 2) << "with nothing to compare with";
+}
+
+TEST_F(CommandLineTest, AMeasurementThatFailedChangesNoExitCode) {
+  write(cases() / "fine.json", case_text("fine"));
+  const Answer answer = ask({"report", "--out", "out", "--performance-failure", "it ended with exit code 3"});
+  EXPECT_EQ(answer.code, 0);
+  ASSERT_TRUE(answer.measurements);
+  EXPECT_EQ(answer.measurements->failure, "it ended with exit code 3");
+  EXPECT_TRUE(answer.reported);
+}
+
+TEST_F(CommandLineTest, SaysByItsExitCodeWhetherMeasurementsAreCurrent) {
+  const bool current = still_holds(measured_by_, measured_by_);
+  EXPECT_EQ(ask({"check-performance", "m.json"}).code, current ? 0 : 1) << "this program may be of a modified source";
+  EXPECT_EQ(ask({"check-performance", "bad.json"}).code, 2);
+  EXPECT_EQ(ask({"check-performance"}).code, 2);
+  measured_by_ = {"feedbeef", "another processor", 3};
+  const Answer elsewhere = ask({"check-performance", "m.json"});
+  EXPECT_EQ(elsewhere.code, 1);
+  EXPECT_EQ(elsewhere.out, "measured at revision feedbeef on another processor, 3 cores: not current\n");
+}
+
+TEST(Measurements, HoldOnlyForTheSameMachineAndUnmodifiedRevision) {
+  const MeasuredBy now{"0123abcd", "a processor", 2};
+  EXPECT_TRUE(still_holds(now, now));
+  EXPECT_FALSE(still_holds({"feedbeef", "a processor", 2}, now));
+  EXPECT_FALSE(still_holds({"0123abcd-dirty", "a processor", 2}, now));
+  EXPECT_FALSE(still_holds({"0123abcd", "another processor", 2}, now));
+  EXPECT_FALSE(still_holds({"0123abcd", "a processor", 4}, now));
+  for (const char* revision : {"unknown", "0123abcd-dirty"}) {
+    const MeasuredBy vague{revision, "a processor", 2};
+    EXPECT_FALSE(still_holds(vague, vague)) << revision;
+  }
 }
 
 }  // namespace
