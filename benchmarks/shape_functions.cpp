@@ -32,7 +32,7 @@ void weights(benchmark::State& state) {
   for (auto _ : state) {
     for (std::size_t p = 0; p < places.position.size(); ++p) {
       const double above_cell = places.position[p] - std::floor(places.position[p]);
-      Shape::evaluate(above_cell + Shape::nodes_before, places.half_size[p], weight, gradient);
+      Shape::evaluate(above_cell + Shape::nodes_before, places.half_size[p], 1.0, weight, gradient);
       // A pointer and a clobber: passing a mutable double by reference can zero it with this compiler.
       benchmark::DoNotOptimize(weight.data());
       benchmark::DoNotOptimize(gradient.data());

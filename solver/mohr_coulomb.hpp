@@ -80,8 +80,7 @@ class MohrCoulombLaw {
 
   explicit MohrCoulombLaw(const MohrCoulomb& material);
 
-  /// Cauchy stress [Pa] after a strain increment [-]: the elastic one, bit for bit, where that is within the
-  /// limit.
+  /// Cauchy stress [Pa] after a strain increment [-]: the elastic one where that is within the limit.
   template <class Value>
   SymmetricTensor<2, Value> update(const SymmetricTensor<2, Value>& stress,
                                    const SymmetricTensor<2, Value>& strain_increment,

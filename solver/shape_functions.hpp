@@ -10,54 +10,52 @@
 
 namespace mpm {
 
-// All lengths in this file are in cells. A Value is a number or lanes of them.
-
-/// Integral of the hat function from 0 to t, for any t: psi(t) = t (1 - |t| / 2), t clamped to [-1, 1].
-template <class Value>
-Value hat_integral(const Value& t) {
-  using std::abs, std::max, std::min;
-  const Value inside = max(Value(-1), min(t, Value(1)));
-  return inside * (1 - abs(inside) / 2);
-}
-
-/// Hat function N(d) = max(0, 1 - |d|) [-].
-template <class Value>
-Value hat(const Value& d) {
-  using std::abs, std::max;
-  return max(Value(0), 1 - abs(d));
-}
+// Places and half sizes in this file are in cells. A Value is a number or lanes of them.
 
 /// Weights of a point particle: S = N(d) [Kiriyama15, section 2].
 struct LinearShape {
   static constexpr int width = 2;         ///< nodes per axis a particle can reach
   static constexpr int nodes_before = 0;  ///< of them below the lower node of its cell
 
-  /// Weight [-] and weight gradient [1/cell] of the `width` nodes reached by a particle that lies `place`
-  /// above the first of them.
+  /// Weight [-] and weight gradient [1/m] of the `width` nodes reached by a particle that lies `place` above
+  /// the first of them: in [nodes_before, nodes_before + 1).
   template <class Value>
-  static void evaluate(const Value& place, const Value& /*half_size*/, std::array<Value, width>& weight,
-                       std::array<Value, width>& gradient) {
+  static void evaluate(const Value& place, const Value& /*half_size*/, Scalar<Value> cells_per_length,
+                       std::array<Value, width>& weight, std::array<Value, width>& gradient) {
     weight = {1 - place, place};
-    gradient = {Value(-1), Value(1)};
+    gradient = {Value(-cells_per_length), Value(cells_per_length)};
   }
 };
 
 /// Weights averaged over a particle's domain of half size l, exact for every 0 < l <= 1 [BardenhagenKober04]:
-/// S = [psi(d + l) - psi(d - l)] / 2l and S' = [N(d + l) - N(d - l)] / 2l, with d = position - node.
+/// S = [psi(d + l) - psi(d - l)] / 2l and S' = [N(d + l) - N(d - l)] / 2l, with d = position - node, the hat
+/// function N and its integral psi(t) = t (1 - |t| / 2), t clamped to [-1, 1].
+///
+/// The particle is between the second and the third of its nodes. So its lower edge lies within a cell of the
+/// second, l- = d1 - l in (-1, 1), and its upper edge within a cell of the third, l+ = d2 + l in (-1, 1).
+/// With their positive and negative parts, x = x' - x'' and |x| = x' + x'', both functions need no other
+/// case:
+///
+///     2l S = l-''^2/2,   (1 - l+''^2 + l-'^2 - l-''^2)/2 - l-,   (1 - l-'^2 + l+''^2 - l+'^2)/2 + l+,
+///     l+'^2/2 2l S' = -l-'',     l+'' - 1 + |l-|,                        1 - |l+| - l-', l+'
 struct GimpShape {
   static constexpr int width = 4;  ///< a domain of 2l <= 2 cells reaches at most four nodes per axis
   static constexpr int nodes_before = 1;
 
   template <class Value>
-  static void evaluate(const Value& place, const Value& half_size, std::array<Value, width>& weight,
-                       std::array<Value, width>& gradient) {
-    const Value over_size = 1 / (2 * half_size);
-    for (int k = 0; k < width; ++k) {
-      const Value distance = place - static_cast<Scalar<Value>>(k);
-      const Value left = distance - half_size, right = distance + half_size;
-      weight[static_cast<std::size_t>(k)] = (hat_integral(right) - hat_integral(left)) * over_size;
-      gradient[static_cast<std::size_t>(k)] = (hat(right) - hat(left)) * over_size;
-    }
+  static void evaluate(const Value& place, const Value& half_size, Scalar<Value> cells_per_length,
+                       std::array<Value, width>& weight, std::array<Value, width>& gradient) {
+    using std::max;
+    const Value zero(0), over_size = 1 / (2 * half_size), over_length = over_size * cells_per_length;
+    const Value lower = place - 1 - half_size, upper = place - 2 + half_size;
+    const Value above_second = max(zero, lower), below_second = max(zero, -lower);
+    const Value above_third = max(zero, upper), below_third = max(zero, -upper);
+    const Value first = below_second * below_second, last = above_third * above_third;
+    const Value inner = (1 + above_second * above_second - below_third * below_third) / 2;
+    weight = {first / 2 * over_size, (inner - first / 2 - lower) * over_size,
+              (1 - inner - last / 2 + upper) * over_size, last / 2 * over_size};
+    gradient = {-below_second * over_length, (below_third - 1 + above_second + below_second) * over_length,
+                (1 - above_third - below_third - above_second) * over_length, above_third * over_length};
   }
 };
 

@@ -178,8 +178,7 @@ template <class V>
 void Transfer<Dim, Real, scheme>::evaluate(const Vector<Dim, V>& place, const Vector<Dim, V>& half_size,
                                            Real per_length, Stencil<Dim, V, Shape>& stencil) {
   for (std::size_t a = 0; a < Dim; ++a) {
-    Shape::evaluate(place[a], half_size[a], stencil.weight[a], stencil.gradient[a]);
-    for (V& gradient : stencil.gradient[a]) gradient = gradient * per_length;
+    Shape::evaluate(place[a], half_size[a], per_length, stencil.weight[a], stencil.gradient[a]);
   }
 }
 
@@ -308,19 +307,19 @@ void Transfer<Dim, Real, scheme>::add(std::size_t count, ReadStencil&& stencil_o
   }
 }
 
-/// The i-th sums belong to the i-th node of each lane, which is node lane + i.
+/// The i-th sums belong to the i-th node of each lane, which is node lane + i: they move up by i lanes, all
+/// that are further up together, one lane at a time.
 template <int Dim, class Real, Scheme scheme>
 void Transfer<Dim, Real, scheme>::add_to_nodes(const std::array<Value, Shape::width>& sums, Real* nodes) {
   if constexpr (lanes >= Shape::width) {
     const Value zero(0);
-    Value lower = sums[0], upper = zero;
-    [&]<int... i>(std::integer_sequence<int, i...>) {
-      ((lower = lower + moved_up<i + 1>(zero, sums[i + 1])), ...);
-      ((upper = upper + moved_up<i + 1>(sums[i + 1], zero)), ...);
+    Value here = sums.back(), beyond = zero;
+    for (std::size_t i = sums.size() - 1; i-- > 0;) {
+      beyond = moved_up<1>(here, beyond);
+      here = moved_up<1>(zero, here) + sums[i];
     }
-    (std::make_integer_sequence<int, Shape::width - 1>{});
-    store(load<Value>(nodes) + lower, nodes);
-    store(load<Value>(nodes + lanes) + upper, nodes + lanes);
+    store(load<Value>(nodes) + here, nodes);
+    store(load<Value>(nodes + lanes) + beyond, nodes + lanes);
   } else {
     for (std::size_t i = 0; i < sums.size(); ++i) store(load<Value>(nodes + i) + sums[i], nodes + i);
   }

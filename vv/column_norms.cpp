@@ -91,7 +91,7 @@ Eigen::MatrixXd lengths_in_cells(const Scene& scene, const Profile& profile) {
       const double half_size = profile.half_size[p] / scene.cell_size;
       const std::int32_t first = static_cast<std::int32_t>(x) - Shape::nodes_before;
       std::array<double, Shape::width> weight, gradient;
-      Shape::evaluate(x - first, half_size, weight, gradient);
+      Shape::evaluate(x - first, half_size, 1.0, weight, gradient);
       double inside = 0.0;
       for (int k = 0; k + 1 < Shape::width; ++k) {
         inside -=

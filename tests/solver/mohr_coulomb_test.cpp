@@ -480,7 +480,10 @@ TEST(VerificationOfMohrCoulomb, ReturnsToTheLimitOnceAndLeavesElasticStatesAlone
     ASSERT_LE(relative_excess(material, found), law.round_off);
     ASSERT_EQ(law.update(found, {}, 1.0), found);
     if (relative_excess(material, state.trial) <= 0) {
-      ASSERT_EQ(found, state.trial);
+      // The compiler may fuse a multiplication and an addition of the elastic trial in one place and not in the
+      // other: a rounding of each of the terms, which are as large as the stresses before and after.
+      const double size = size_of(state.stress) + size_of(state.trial);
+      ASSERT_LE(difference(found, state.trial), 4 * std::numeric_limits<double>::epsilon() * size);
       ++elastic_states;
     } else if (relative_excess(material, state.trial) > 1e-12) {
       ASSERT_NE(found, state.trial);

@@ -14,7 +14,7 @@ struct Sample {
   std::array<Real, Shape::width> weight, gradient;
   std::int32_t first;
   Sample(Real position, Real half_size) : first(static_cast<std::int32_t>(position) - Shape::nodes_before) {
-    Shape::evaluate(position - static_cast<Real>(first), half_size, weight, gradient);
+    Shape::evaluate(position - static_cast<Real>(first), half_size, Real(1), weight, gradient);
   }
   Real node(std::size_t k) const { return static_cast<Real>(first) + static_cast<Real>(k); }
   Real weight_of(std::int32_t node_index) const {
