@@ -125,6 +125,7 @@ struct Job {
   std::size_t run;
   std::filesystem::path file;
   int pool_size;
+  int step_threads = 0;               ///< that share the work of each step; 0 leaves it to the pool
   double estimate;                    ///< particle-steps
   std::optional<Record> record = {};  ///< once done
   std::atomic<std::int64_t> particle_steps{0};
@@ -241,6 +242,7 @@ class Pool {
     std::optional<Record> record = executed(job);
     if (!record) return;
     record->threads = threads_;
+    record->step_threads = step_threads_of(job);
     if (record->failure.empty()) write_atomically(job.file, file_text_of(*record));
     job.record = std::move(record);
   }
@@ -252,7 +254,9 @@ class Pool {
       return !stopping();
     };
     try {
-      return execute_(*job.definition, job.request(), pulse);
+      RunRequest request = job.request();
+      request.threads = step_threads_of(job);
+      return execute_(*job.definition, request, pulse);
     } catch (const Abandoned&) {
       return std::nullopt;
     } catch (const std::exception& error) {
@@ -260,6 +264,11 @@ class Pool {
     } catch (...) {
       return failed(job, "an exception that says nothing about itself");
     }
+  }
+
+  /// Threads that would have nothing to do share the steps of the runs there are.
+  int step_threads_of(const Job& job) const {
+    return job.step_threads > 0 ? job.step_threads : std::max(1, threads_ / static_cast<int>(jobs_.size()));
   }
 
   static Record failed(const Job& job, const std::string& reason) {
@@ -342,7 +351,10 @@ class Campaign {
       const int other_size = first->record->threads == 1 ? 2 : 1;
       const auto file = record_file(options_.out, *first->definition, first->run, true);
       repeats_.push_back(std::make_unique<Job>(*first->definition, first->run, file, other_size));
-      reused_ += repeats_.back()->reuse([&](const Record& r) { return r.threads != first->record->threads; });
+      repeats_.back()->step_threads = first->record->step_threads == 1 ? 2 : 1;
+      reused_ += repeats_.back()->reuse([&](const Record& r) {
+        return r.threads != first->record->threads && r.step_threads != first->record->step_threads;
+      });
     }
   }
 

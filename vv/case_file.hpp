@@ -135,6 +135,7 @@ struct RunRequest {
   Scene scene;      ///< checked; without bodies for an element test
   std::shared_ptr<const reference::ManufacturedSolution> motion = nullptr;  ///< what drives the scene; may be null
   std::optional<ElementTest> element = std::nullopt;  ///< checked; stands in place of the scene
+  int threads = 1;                                    ///< share the work of each step; they change no bit
 };
 
 /// One case file, checked: every run it asks for can start.

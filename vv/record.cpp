@@ -318,7 +318,7 @@ class Recorder {
  public:
   Recorder(const Case& definition, const RunRequest& request, const Pulse& pulse)
       : scene_(request.scene),
-        simulation_(request.scene),
+        simulation_(request.scene, request.threads),
         pulse_(pulse),
         start_(simulation_.particles()),
         pending_(definition.snapshots) {
@@ -643,6 +643,7 @@ Json to_json(const Record& record) {
           {"program_hash", record.program_hash},
           {"revision", record.revision},
           {"threads", record.threads},
+          {"step_threads", record.step_threads},
           {"failure", record.failure},
           {"outcome", outcome_to_json(record.outcome)},
           {"time_step", number(record.time_step)},
@@ -674,6 +675,7 @@ Record record_from_json(const Json& json) {
   record.program_hash = json.at("program_hash").get<std::string>();
   record.revision = json.at("revision").get<std::string>();
   record.threads = json.at("threads").get<int>();
+  record.step_threads = json.value("step_threads", 1);
   record.failure = json.at("failure").get<std::string>();
   record.outcome = outcome_from_json(json.at("outcome"));
   record.time_step = number_from(json.at("time_step"));

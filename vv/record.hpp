@@ -54,7 +54,8 @@ struct Record {
   std::string input_hash;    ///< of the resolved scene, probes and snapshots
   std::string program_hash;  ///< of the program that ran it
   std::string revision;      ///< of the source tree that program was built from
-  int threads = 1;           ///< of the pool the run was part of; the run itself uses one
+  int threads = 1;           ///< of the pool the run was part of
+  int step_threads = 1;      ///< that shared the work of each of its steps
   std::string failure;       ///< why there is no result at all (an exception's text); empty when there is one
   Outcome outcome;           ///< of a run with a `failure` it says only that it is not completed
   double time_step = 0.0;    ///< [s]
