@@ -14,6 +14,7 @@ count() {
 }
 
 command -v valgrind >/dev/null || { echo 'skipped: no valgrind here'; exit 77; }
+grep -qw avx2 /proc/cpuinfo || { echo 'skipped: the probe needs AVX2'; exit 77; }
 if [ -z "$write" ] && ! grep -qxF "# $compiler" "$table"; then
   echo "skipped: the table is for another compiler than $compiler"; exit 77
 fi
