@@ -1,0 +1,27 @@
+#pragma once
+
+#include <vector>
+
+namespace mpm::bench {
+
+/// A figure that was measured several times.
+struct Measured {
+  double value = 0.0;  ///< median of the repetitions
+  double low = 0.0;    ///< smallest of them
+  double high = 0.0;   ///< largest of them
+
+  double half_width() const { return (high - low) / 2; }
+  /// Half width over median [-]; 0 for a median of 0.
+  double spread() const { return value == 0 ? 0 : half_width() / value; }
+
+  friend bool operator==(const Measured&, const Measured&) = default;
+};
+
+/// The middle one of the values, or the mean of the two middle ones. Throws std::invalid_argument without
+/// values or with one that is not finite.
+double median(std::vector<double> values);
+
+/// Throws as `median`.
+Measured summary_of(const std::vector<double>& repetitions);
+
+}  // namespace mpm::bench

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <benchmark/benchmark.h>
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "benchmarks/scenes.hpp"
+
+namespace mpm::bench {
+
+/// Whole steps to be measured.
+struct StepBenchmark {
+  SceneChoice choice;
+  int threads = 1;
+  std::optional<double> target;  ///< particle-updates per second
+
+  /// "footing/ugimp/usl/linear_elastic/float64/10000/1"
+  std::string name() const;
+};
+
+/// The whole steps of the full suite, or of the quick one, which is a part of it; those that need more
+/// threads than a simulation can use are left out.
+std::vector<StepBenchmark> step_benchmarks(bool quick);
+
+/// A function to be timed; it sets the counter `particles` to the number it updates in an iteration.
+struct Kernel {
+  std::string name;
+  std::function<void(benchmark::State&)> run;
+};
+
+std::vector<Kernel> shape_function_kernels();  ///< weights and gradients along one axis
+std::vector<Kernel> law_kernels();             ///< stress updates alone
+
+/// The counter of the particles that one iteration updates.
+inline constexpr const char* particles_counter = "particles";
+
+}  // namespace mpm::bench
