@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <experimental/simd>
 #include <functional>
@@ -24,11 +25,14 @@ void consume(const double& result) { benchmark::DoNotOptimize(result); }
 double calls_per_second(double seconds, const std::function<void()>& call) {
   using Clock = std::chrono::steady_clock;
   call();
-  for (std::int64_t calls = 1;; calls *= 2) {
+  for (std::int64_t calls = 1;;) {
     const auto start = Clock::now();
     for (std::int64_t k = 0; k < calls; ++k) call();
     const double taken = std::chrono::duration<double>(Clock::now() - start).count();
     if (taken >= seconds) return static_cast<double>(calls) / taken;
+    // As many as should do, and a fifth more; at most ten times as many, since a short time tells little.
+    const double growth = taken > 0 ? 1.2 * seconds / taken : 10.0;
+    calls = static_cast<std::int64_t>(std::ceil(static_cast<double>(calls) * std::min(growth, 10.0)));
   }
 }
 

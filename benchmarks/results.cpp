@@ -3,7 +3,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <iterator>
+#include <sstream>
 
 #include "vv/json_reader.hpp"
 
@@ -221,14 +221,16 @@ Results parse_results(const std::string& text, const std::string& file) {
 }
 
 Results read_results(const std::filesystem::path& file) {
+  const auto refuse = [&](const std::string& why) {
+    throw ResultsError(file.string() + ": cannot read: " + why);
+  };
+  if (std::filesystem::is_directory(file)) refuse("it is a directory");
   errno = 0;
   std::ifstream stream(file, std::ios::binary);
-  const std::string text(std::istreambuf_iterator<char>(stream), {});
-  if (!stream.is_open() || stream.bad() || std::filesystem::is_directory(file)) {
-    throw ResultsError(file.string() + ": cannot read: " +
-                       (std::filesystem::is_directory(file) ? "it is a directory" : reason()));
-  }
-  return parse_results(text, file.string());
+  if (!stream) refuse(reason());
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return parse_results(text.str(), file.string());
 }
 
 void check_writable(const std::filesystem::path& file) {
