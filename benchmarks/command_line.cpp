@@ -105,6 +105,15 @@ int tell_comparison(const Results& before, const Results& after) {
   return comparison.has_slower() ? became_slower : all_good;
 }
 
+void tell(const Mishaps& mishaps) {
+  constexpr double bearable = 0.02;
+  if (mishaps.time_lost > bearable) {
+    complain(fmt::format("other programs had the core for {:.0f} % of the time: the rates are too low",
+                         100 * mishaps.time_lost));
+  }
+  for (const std::string& error : mishaps.errors) complain(error);
+}
+
 int measure_all(const Arguments& arguments) {
   // Everything that can be wrong with the arguments is looked at before minutes go by.
   const Suite suite = suite_of(arguments);
@@ -116,11 +125,9 @@ int measure_all(const Arguments& arguments) {
   ProgressLine line;
   const Progress progress = [&](const std::string& text) { line.show("measuring " + text); };
   Results results = circumstances(effort);
-  std::vector<std::string> errors;
+  Mishaps mishaps;
   if (!suite.steps.empty() || !suite.kernels.empty()) {
-    progress("the machine's limits");
-    results.limits = measure_limits(effort.repetitions, effort.seconds_each);
-    errors = measure(suite.steps, suite.kernels, effort, progress, results);
+    mishaps = measure(suite.steps, suite.kernels, effort, progress, results);
   }
   if (arguments.filter.empty()) {
     progress("memory and start-up");
@@ -136,9 +143,9 @@ int measure_all(const Arguments& arguments) {
   fmt::print("{}", text_of(results));
   write_results(results, arguments.json);
   fmt::print("\nwritten to {}\n", arguments.json);
-  for (const std::string& error : errors) complain(error);
+  tell(mishaps);
   const int verdict = before ? tell_comparison(*before, results) : all_good;
-  return errors.empty() ? verdict : bad_input;
+  return mishaps.errors.empty() ? verdict : bad_input;
 }
 
 int run(const Arguments& arguments) {

@@ -66,7 +66,7 @@ void update(benchmark::State& state, const Law& law, Points<Dim, Real> points) {
     for (std::size_t c = 0; c < components; ++c) benchmark::DoNotOptimize(points.result[c].data());
     benchmark::ClobberMemory();
   }
-  state.counters[particles_counter] = static_cast<double>(particles);
+  state.counters[units_counter] = static_cast<double>(particles);
 }
 
 template <class Real>
@@ -109,7 +109,7 @@ void neo_hookean(benchmark::State& state) {
     for (std::size_t c = 0; c < 4; ++c) benchmark::DoNotOptimize(points.result[c].data());
     benchmark::ClobberMemory();
   }
-  state.counters[particles_counter] = static_cast<double>(particles);
+  state.counters[units_counter] = static_cast<double>(particles);
 }
 
 }  // namespace

@@ -1,15 +1,11 @@
 #include "benchmarks/machine_limits.hpp"
 
-#include <benchmark/benchmark.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <chrono>
-#include <cmath>
 #include <cstdint>
 #include <experimental/simd>
-#include <functional>
 #include <numeric>
 #include <stdexcept>
 
@@ -21,52 +17,25 @@ namespace stdx = std::experimental;
 /// Consumes a result, so that what led to it must be computed.
 void consume(const double& result) { benchmark::DoNotOptimize(result); }
 
-/// Calls per second of `call`, measured over at least `seconds` after one call that warms up.
-double calls_per_second(double seconds, const std::function<void()>& call) {
-  using Clock = std::chrono::steady_clock;
-  call();
-  for (std::int64_t calls = 1;;) {
-    const auto start = Clock::now();
-    for (std::int64_t k = 0; k < calls; ++k) call();
-    const double taken = std::chrono::duration<double>(Clock::now() - start).count();
-    if (taken >= seconds) return static_cast<double>(calls) / taken;
-    // As many as should do, and a fifth more; at most ten times as many, since a short time tells little.
-    const double growth = taken > 0 ? 1.2 * seconds / taken : 10.0;
-    calls = static_cast<std::int64_t>(std::ceil(static_cast<double>(calls) * std::min(growth, 10.0)));
-  }
-}
-
 // ---- triad ----
 
-class Triad {
- public:
-  /// `bytes` of the three arrays together.
-  explicit Triad(std::size_t bytes)
-      : a_(bytes / (3 * sizeof(double)), 0.0), b_(a_.size(), 1.0), c_(a_.size(), 2.0) {}
-
-  /// Bytes read and written per second.
-  double rate(double seconds) {
-    const double calls = calls_per_second(seconds, [this] { sweep(); });
-    consume(a_.front() + a_.back());
-    return calls * 3 * sizeof(double) * static_cast<double>(a_.size());
-  }
-
- private:
-  void sweep() {
-    double* a = a_.data();
-    const double *b = b_.data(), *c = c_.data();
-    for (std::size_t i = 0; i < a_.size(); ++i) a[i] = b[i] + 3.0 * c[i];
-    benchmark::DoNotOptimize(a_.data());
+/// `bytes` of the three arrays together.
+void triad(benchmark::State& state, std::size_t bytes) {
+  const std::size_t length = bytes / (3 * sizeof(double));
+  std::vector<double> a(length, 0.0);
+  const std::vector<double> b(length, 1.0), c(length, 2.0);
+  for ([[maybe_unused]] auto iteration : state) {
+    for (std::size_t i = 0; i < length; ++i) a[i] = b[i] + 3.0 * c[i];
+    benchmark::DoNotOptimize(a.data());
     benchmark::ClobberMemory();
   }
-
-  std::vector<double> a_, b_, c_;
-};
+  consume(a.front() + a.back());
+  state.counters[units_counter] = static_cast<double>(3 * sizeof(double) * length);
+}
 
 // ---- multiply-add ----
 
-/// Operations per second.
-double fma_peak(double seconds) {
+void fma_peak(benchmark::State& state) {
   using Lanes = stdx::native_simd<double>;
   // Two units with a latency of four or five cycles need ten chains; with two constants more, twelve still
   // fit the sixteen registers of AVX2.
@@ -75,15 +44,15 @@ double fma_peak(double seconds) {
   // Every chain tends to addend / (1 - factor), so no number becomes large or denormal.
   const volatile double opaque_factor = 0.5, opaque_addend = 1.0;
   const Lanes factor = opaque_factor, addend = opaque_addend;
-  const double calls = calls_per_second(seconds, [&] {
+  for ([[maybe_unused]] auto iteration : state) {
     std::array<Lanes, chains> sums;
     for (std::size_t k = 0; k < chains; ++k) sums[k] = static_cast<double>(k);
     for (int round = 0; round < rounds; ++round) {
       for (Lanes& sum : sums) sum = sum * factor + addend;
     }
     consume(stdx::reduce(std::accumulate(sums.begin(), sums.end(), Lanes(0.0))));
-  });
-  return calls * rounds * chains * static_cast<double>(Lanes::size()) * 2;
+  }
+  state.counters[units_counter] = 2.0 * rounds * static_cast<double>(chains * Lanes::size());
 }
 
 // ---- scatter and gather ----
@@ -124,12 +93,11 @@ void for_each_node(const Cloud& cloud, std::size_t p, Visit&& visit) {
 template <std::size_t numbers>
 using Numbers = stdx::fixed_size_simd<double, numbers>;
 
-/// Particles per second.
-double scatter_rate(double seconds) {
+void scatter(benchmark::State& state) {
   const Cloud cloud;
   const std::vector<double> values(particles * 4, 1.0);
   std::vector<double> nodes(stride * stride * 4, 0.0);
-  const double calls = calls_per_second(seconds, [&] {
+  for ([[maybe_unused]] auto iteration : state) {
     for (std::size_t p = 0; p < particles; ++p) {
       const Numbers<4> value(&values[p * 4], stdx::element_aligned);
       for_each_node(cloud, p, [&](std::size_t node, double weight) {
@@ -139,17 +107,16 @@ double scatter_rate(double seconds) {
       });
     }
     benchmark::ClobberMemory();
-  });
+  }
   consume(std::accumulate(nodes.begin(), nodes.end(), 0.0));
-  return calls * particles;
+  state.counters[units_counter] = static_cast<double>(particles);
 }
 
-/// Particles per second.
-double gather_rate(double seconds) {
+void gather(benchmark::State& state) {
   const Cloud cloud;
   const std::vector<double> nodes(stride * stride * 2, 1.0);
   std::vector<double> results(particles * 2);
-  const double calls = calls_per_second(seconds, [&] {
+  for ([[maybe_unused]] auto iteration : state) {
     for (std::size_t p = 0; p < particles; ++p) {
       Numbers<2> sum = 0.0;
       for_each_node(cloud, p, [&](std::size_t node, double weight) {
@@ -159,30 +126,9 @@ double gather_rate(double seconds) {
     }
     benchmark::DoNotOptimize(results.data());
     benchmark::ClobberMemory();
-  });
+  }
   consume(std::accumulate(results.begin(), results.end(), 0.0));
-  return calls * particles;
-}
-
-// ---- all of them ----
-
-struct Probe {
-  std::string name, title, unit;
-  std::function<double(double seconds)> rate;
-};
-
-std::vector<Probe> probes() {
-  constexpr std::size_t largest = 256u << 20;
-  const auto [l2, l3] = caches();
-  const auto triad = [](std::size_t bytes) {
-    return [bytes](double seconds) { return Triad(bytes).rate(seconds); };
-  };
-  return {{"triad_l2", "triad in L2", "B/s", triad(l2 / 4)},
-          {"triad_l3", "triad in L3", "B/s", triad(std::max(l3 / 4, 2 * l2))},
-          {"triad_memory", "triad from memory", "B/s", triad(std::max(std::min(4 * l3, largest), 2 * l3))},
-          {"fma_peak", "multiply-adds", "flop/s", fma_peak},
-          {"scatter", "9-node scatter of 4 numbers, sorted", "particles/s", scatter_rate},
-          {"gather", "9-node gather of 2 numbers, sorted", "particles/s", gather_rate}};
+  state.counters[units_counter] = static_cast<double>(particles);
 }
 
 }  // namespace
@@ -195,17 +141,18 @@ Caches caches() {
   return {.l2 = size(_SC_LEVEL2_CACHE_SIZE, 1u << 20), .l3 = size(_SC_LEVEL3_CACHE_SIZE, 32u << 20)};
 }
 
-std::vector<Limit> measure_limits(int repetitions, double seconds) {
-  const std::vector<Probe> all = probes();
-  std::vector<std::vector<double>> rates(all.size());
-  for (int repetition = 0; repetition < repetitions; ++repetition) {
-    for (std::size_t k = 0; k < all.size(); ++k) rates[k].push_back(all[k].rate(seconds));
-  }
-  std::vector<Limit> limits;
-  for (std::size_t k = 0; k < all.size(); ++k) {
-    limits.push_back({all[k].name, all[k].title, all[k].unit, summary_of(rates[k])});
-  }
-  return limits;
+std::vector<LimitProbe> limit_probes() {
+  constexpr std::size_t largest = 256u << 20;
+  const auto [l2, l3] = caches();
+  const auto triad_of = [](std::size_t bytes) {
+    return [bytes](benchmark::State& state) { triad(state, bytes); };
+  };
+  return {{"triad_l2", "triad in L2", "B/s", triad_of(l2 / 4)},
+          {"triad_l3", "triad in L3", "B/s", triad_of(std::max(l3 / 4, 2 * l2))},
+          {"triad_memory", "triad from memory", "B/s", triad_of(std::max(std::min(4 * l3, largest), 2 * l3))},
+          {"fma_peak", "multiply-adds", "flop/s", fma_peak},
+          {"scatter", "9-node scatter of 4 numbers, sorted", "particles/s", scatter},
+          {"gather", "9-node gather of 2 numbers, sorted", "particles/s", gather}};
 }
 
 const Limit& limit_named(const std::vector<Limit>& limits, const std::string& name) {

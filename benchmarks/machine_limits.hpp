@@ -1,6 +1,9 @@
 #pragma once
 
+#include <benchmark/benchmark.h>
+
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -24,9 +27,13 @@ struct Caches {
 };
 Caches caches();
 
-/// Measures the limits one after another, and all of them `repetitions` times over, each for at least
-/// `seconds` [s]:
-///
+/// How a limit is measured: a function to be timed, which sets the counter `units_counter` to the bytes,
+/// operations or particles of an iteration.
+struct LimitProbe {
+  std::string name, title, unit;
+  std::function<void(benchmark::State&)> run;
+};
+
 /// - triad: a = b + s c, 24 bytes per element (what a cache line fetched before it is written costs besides
 /// is
 ///   not counted), with arrays that together fill a quarter of the L2 cache; a quarter of L3, but at least
@@ -35,7 +42,10 @@ Caches caches();
 /// - scatter: particles in the order of their cells add four doubles, weighted by products of given weights
 ///   along the axes, to 3 x 3 nodes each; 10,000 particles, four a cell.
 /// - gather: the same particles collect two doubles from 3 x 3 nodes each.
-std::vector<Limit> measure_limits(int repetitions, double seconds);
+std::vector<LimitProbe> limit_probes();
+
+/// The counter of what one iteration of a benchmark does.
+inline constexpr const char* units_counter = "units";
 
 /// The limit of that name. Throws std::out_of_range if there is none.
 const Limit& limit_named(const std::vector<Limit>& limits, const std::string& name);

@@ -42,7 +42,7 @@ void whole_steps(benchmark::State& state, const StepBenchmark& step) {
         fmt::format("the scene ended: {}, step {}", name_of(simulation.outcome().ending), simulation.steps())
             .c_str());
   }
-  state.counters[particles_counter] = static_cast<double>(simulation.particle_count());
+  state.counters[units_counter] = static_cast<double>(simulation.particle_count());
 }
 
 /// Keeps the repetitions instead of printing them.
@@ -59,14 +59,17 @@ class Collector : public benchmark::BenchmarkReporter {
         continue;
       }
       Repetitions& of = repetitions[name];
-      of.particles = run.counters.at(particles_counter).value;
-      of.rates.push_back(of.particles * static_cast<double>(run.iterations) / run.real_accumulated_time);
+      of.units = run.counters.at(units_counter).value;
+      of.rates.push_back(of.units * static_cast<double>(run.iterations) / run.real_accumulated_time);
+      of.wall_time += run.real_accumulated_time;
+      of.processor_time += run.cpu_accumulated_time;
     }
   }
 
   struct Repetitions {
-    double particles = 0.0;
+    double units = 0.0;  ///< of an iteration
     std::vector<double> rates;
+    double wall_time = 0.0, processor_time = 0.0;  ///< of the calling thread [s]
   };
   std::map<std::string, Repetitions> repetitions;
   std::vector<std::string> errors;
@@ -93,7 +96,7 @@ StepResult result_of(const StepBenchmark& step, const Collector::Repetitions& re
                     .order = name_of(choice.order),
                     .law = name_of(choice.law),
                     .precision = name_of(choice.precision),
-                    .particles = static_cast<std::int64_t>(repetitions.particles),
+                    .particles = static_cast<std::int64_t>(repetitions.units),
                     .threads = step.threads,
                     .rate = summary_of(repetitions.rates),
                     .target = step.target,
@@ -125,8 +128,8 @@ double noise_of(const std::vector<StepResult>& steps) {
 
 }  // namespace
 
-std::vector<std::string> measure(const std::vector<StepBenchmark>& steps, const std::vector<Kernel>& kernels,
-                                 const Effort& effort, const Progress& progress, Results& results) {
+Mishaps measure(const std::vector<StepBenchmark>& steps, const std::vector<Kernel>& kernels,
+                const Effort& effort, const Progress& progress, Results& results) {
   set_up_library(effort);
   const auto add = [&](const std::string& name, std::function<void(benchmark::State&)> run) {
     benchmark::RegisterBenchmark(name.c_str(), [name, run, progress](benchmark::State& state) {
@@ -134,6 +137,8 @@ std::vector<std::string> measure(const std::vector<StepBenchmark>& steps, const 
       run(state);
     })->UseRealTime();
   };
+  const std::vector<LimitProbe> probes = limit_probes();
+  for (const LimitProbe& probe : probes) add(probe.name, probe.run);
   for (const StepBenchmark& step : steps) {
     add(step.name(), [step](benchmark::State& state) { whole_steps(state, step); });
   }
@@ -142,20 +147,31 @@ std::vector<std::string> measure(const std::vector<StepBenchmark>& steps, const 
   benchmark::RunSpecifiedBenchmarks(&collector);
   benchmark::ClearRegisteredBenchmarks();
 
+  const auto rate_of = [&](const std::string& name) {
+    return summary_of(collector.repetitions.at(name).rates);
+  };
+  for (const LimitProbe& probe : probes) {
+    results.limits.push_back({probe.name, probe.title, probe.unit, rate_of(probe.name)});
+  }
+  Mishaps mishaps{.errors = collector.errors};
+  double wall_time = 0.0, processor_time = 0.0;
+  const auto watch = [&](const std::string& name) {
+    wall_time += collector.repetitions.at(name).wall_time;
+    processor_time += collector.repetitions.at(name).processor_time;
+  };
+  for (const LimitProbe& probe : probes) watch(probe.name);
   for (const StepBenchmark& step : steps) {
-    const auto found = collector.repetitions.find(step.name());
-    if (found != collector.repetitions.end()) {
-      results.steps.push_back(result_of(step, found->second, results.limits));
-    }
+    if (!collector.repetitions.contains(step.name())) continue;
+    results.steps.push_back(result_of(step, collector.repetitions.at(step.name()), results.limits));
+    if (step.threads == 1) watch(step.name());
   }
   for (const Kernel& kernel : kernels) {
-    const auto found = collector.repetitions.find(kernel.name);
-    if (found != collector.repetitions.end()) {
-      results.kernels.push_back({kernel.name, summary_of(found->second.rates)});
-    }
+    results.kernels.push_back({kernel.name, rate_of(kernel.name)});
+    watch(kernel.name);
   }
+  mishaps.time_lost = std::max(0.0, 1 - processor_time / wall_time);
   results.noise = noise_of(results.steps);
-  return collector.errors;
+  return mishaps;
 }
 
 std::size_t bytes_of(const SceneChoice& choice) {

@@ -17,11 +17,18 @@ struct Effort {
 /// Told what is being measured, as a line for a person.
 using Progress = std::function<void(const std::string&)>;
 
-/// Measures steps and kernels in repetitions that take turns in random order, and puts both into `results`
-/// with what the model and the limits in `results` make of them. Returns what went wrong, one line each;
-/// nothing of that is in `results`.
-std::vector<std::string> measure(const std::vector<StepBenchmark>& steps, const std::vector<Kernel>& kernels,
-                                 const Effort& effort, const Progress& progress, Results& results);
+/// What may make the results worth less.
+struct Mishaps {
+  std::vector<std::string> errors;  ///< what could not be measured and why, one line each
+  /// Wall time in which single-threaded benchmarks were not running, over all of theirs [-]: other programs
+  /// had the core. Above a few per cent the rates are too low.
+  double time_lost = 0.0;
+};
+
+/// Measures the machine's limits, steps and kernels in repetitions that take turns in random order, and puts
+/// them into `results`.
+Mishaps measure(const std::vector<StepBenchmark>& steps, const std::vector<Kernel>& kernels,
+                const Effort& effort, const Progress& progress, Results& results);
 
 /// What a simulation of the scene holds in memory [B], threads not counted.
 std::size_t bytes_of(const SceneChoice& choice);

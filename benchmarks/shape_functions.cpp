@@ -35,7 +35,7 @@ void weights(benchmark::State& state) {
     benchmark::DoNotOptimize(gradient.data());
     benchmark::ClobberMemory();
   }
-  state.counters[particles_counter] = static_cast<double>(particles);
+  state.counters[units_counter] = static_cast<double>(particles);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "benchmarks/machine_limits.hpp"
 #include "benchmarks/scenes.hpp"
 
 namespace mpm::bench {
@@ -25,7 +26,7 @@ struct StepBenchmark {
 /// threads than a simulation can use are left out.
 std::vector<StepBenchmark> step_benchmarks(bool quick);
 
-/// A function to be timed; it sets the counter `particles` to the number it updates in an iteration.
+/// A function to be timed; it sets the counter `units_counter` to the number it updates in an iteration.
 struct Kernel {
   std::string name;
   std::function<void(benchmark::State&)> run;
@@ -33,8 +34,5 @@ struct Kernel {
 
 std::vector<Kernel> shape_function_kernels();  ///< weights and gradients along one axis
 std::vector<Kernel> law_kernels();             ///< stress updates alone
-
-/// The counter of the particles that one iteration updates.
-inline constexpr const char* particles_counter = "particles";
 
 }  // namespace mpm::bench

@@ -5,11 +5,19 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "benchmarks/measuring.hpp"
+
 namespace mpm::bench {
 namespace {
 
 TEST(MachineLimits, are_positive_and_agree_with_each_other) {
-  const std::vector<Limit> limits = measure_limits(3, 0.02);
+  Results results;
+  const Mishaps mishaps = measure(
+      {}, {}, {.repetitions = 3, .seconds_each = 0.02}, [](const auto&) {}, results);
+  EXPECT_TRUE(mishaps.errors.empty());
+  EXPECT_GE(mishaps.time_lost, 0);
+  EXPECT_LT(mishaps.time_lost, 1);
+  const std::vector<Limit>& limits = results.limits;
   ASSERT_EQ(limits.size(), 6u);
   for (const Limit& limit : limits) {
     EXPECT_TRUE(std::isfinite(limit.rate.high)) << limit.name;
