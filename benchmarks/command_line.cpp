@@ -106,10 +106,10 @@ int tell_comparison(const Results& before, const Results& after) {
 }
 
 void tell(const Mishaps& mishaps) {
-  constexpr double bearable = 0.02;
-  if (mishaps.time_lost > bearable) {
-    complain(fmt::format("other programs had the core for {:.0f} % of the time: the rates are too low",
-                         100 * mishaps.time_lost));
+  if (mishaps.time_lost > bearable_loss) {
+    complain(fmt::format(
+        "other programs had the core for {:.0f} % of the time: rates are too low and noise is large",
+        100 * mishaps.time_lost));
   }
   for (const std::string& error : mishaps.errors) complain(error);
 }

@@ -22,4 +22,17 @@ Measured summary_of(const std::vector<double>& repetitions) {
   return {middle, *low, *high};
 }
 
+std::vector<Repetition> least_disturbed(std::vector<Repetition> all) {
+  constexpr std::size_t fewest = 3;
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Repetition& a, const Repetition& b) { return a.time_lost < b.time_lost; });
+  const auto disturbed = std::find_if(all.begin(), all.end(), [](const Repetition& repetition) {
+    return repetition.time_lost > bearable_loss;
+  });
+  const std::size_t undisturbed = static_cast<std::size_t>(disturbed - all.begin());
+  all.erase(all.begin() + static_cast<std::ptrdiff_t>(std::min(all.size(), std::max(undisturbed, fewest))),
+            all.end());
+  return all;
+}
+
 }  // namespace mpm::bench

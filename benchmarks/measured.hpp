@@ -24,4 +24,17 @@ double median(std::vector<double> values);
 /// Throws as `median`.
 Measured summary_of(const std::vector<double>& repetitions);
 
+/// One measurement of a rate.
+struct Repetition {
+  double rate;
+  double time_lost;  ///< share of the wall time in which the program was not running [-]
+};
+
+/// A repetition that has lost more of its time than this was disturbed by other programs [-].
+inline constexpr double bearable_loss = 0.02;
+
+/// The repetitions that were not disturbed, but at least the three that were least (or all, of fewer). What
+/// is kept depends on the time lost alone, never on the rate.
+std::vector<Repetition> least_disturbed(std::vector<Repetition> all);
+
 }  // namespace mpm::bench

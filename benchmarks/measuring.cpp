@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <map>
+#include <numeric>
 
 #include "benchmarks/step_cost.hpp"
 #include "vv/case_file.hpp"
@@ -60,16 +61,14 @@ class Collector : public benchmark::BenchmarkReporter {
       }
       Repetitions& of = repetitions[name];
       of.units = run.counters.at(units_counter).value;
-      of.rates.push_back(of.units * static_cast<double>(run.iterations) / run.real_accumulated_time);
-      of.wall_time += run.real_accumulated_time;
-      of.processor_time += run.cpu_accumulated_time;
+      of.all.push_back({of.units * static_cast<double>(run.iterations) / run.real_accumulated_time,
+                        std::max(0.0, 1 - run.cpu_accumulated_time / run.real_accumulated_time)});
     }
   }
 
   struct Repetitions {
     double units = 0.0;  ///< of an iteration
-    std::vector<double> rates;
-    double wall_time = 0.0, processor_time = 0.0;  ///< of the calling thread [s]
+    std::vector<Repetition> all;
   };
   std::map<std::string, Repetitions> repetitions;
   std::vector<std::string> errors;
@@ -86,7 +85,13 @@ void set_up_library(const Effort& effort) {
   benchmark::Initialize(&count, arguments.data());
 }
 
-StepResult result_of(const StepBenchmark& step, const Collector::Repetitions& repetitions,
+Measured rate_of(const std::vector<Repetition>& repetitions) {
+  std::vector<double> rates;
+  for (const Repetition& repetition : repetitions) rates.push_back(repetition.rate);
+  return summary_of(rates);
+}
+
+StepResult result_of(const StepBenchmark& step, double particles, const Measured& rate,
                      const std::vector<Limit>& limits) {
   const StepCost cost = step_cost(step.choice);
   const SceneChoice& choice = step.choice;
@@ -96,9 +101,9 @@ StepResult result_of(const StepBenchmark& step, const Collector::Repetitions& re
                     .order = name_of(choice.order),
                     .law = name_of(choice.law),
                     .precision = name_of(choice.precision),
-                    .particles = static_cast<std::int64_t>(repetitions.units),
+                    .particles = static_cast<std::int64_t>(particles),
                     .threads = step.threads,
-                    .rate = summary_of(repetitions.rates),
+                    .rate = rate,
                     .target = step.target,
                     .bytes = cost.bytes,
                     .flops = cost.operations};
@@ -147,31 +152,29 @@ Mishaps measure(const std::vector<StepBenchmark>& steps, const std::vector<Kerne
   benchmark::RunSpecifiedBenchmarks(&collector);
   benchmark::ClearRegisteredBenchmarks();
 
-  const auto rate_of = [&](const std::string& name) {
-    return summary_of(collector.repetitions.at(name).rates);
+  std::vector<double> losses;
+  // Threads that wait for each other lose time too, so only a single one's losses are told to be others'
+  // work.
+  const auto rate_on = [&](int threads, const std::string& name) {
+    if (threads > 1) return rate_of(collector.repetitions.at(name).all);
+    const std::vector<Repetition> kept = least_disturbed(collector.repetitions.at(name).all);
+    for (const Repetition& repetition : kept) losses.push_back(repetition.time_lost);
+    return rate_of(kept);
   };
   for (const LimitProbe& probe : probes) {
-    results.limits.push_back({probe.name, probe.title, probe.unit, rate_of(probe.name)});
+    results.limits.push_back({probe.name, probe.title, probe.unit, rate_on(1, probe.name)});
   }
-  Mishaps mishaps{.errors = collector.errors};
-  double wall_time = 0.0, processor_time = 0.0;
-  const auto watch = [&](const std::string& name) {
-    wall_time += collector.repetitions.at(name).wall_time;
-    processor_time += collector.repetitions.at(name).processor_time;
-  };
-  for (const LimitProbe& probe : probes) watch(probe.name);
   for (const StepBenchmark& step : steps) {
-    if (!collector.repetitions.contains(step.name())) continue;
-    results.steps.push_back(result_of(step, collector.repetitions.at(step.name()), results.limits));
-    if (step.threads == 1) watch(step.name());
+    const auto found = collector.repetitions.find(step.name());
+    if (found == collector.repetitions.end()) continue;
+    results.steps.push_back(
+        result_of(step, found->second.units, rate_on(step.threads, step.name()), results.limits));
   }
-  for (const Kernel& kernel : kernels) {
-    results.kernels.push_back({kernel.name, rate_of(kernel.name)});
-    watch(kernel.name);
-  }
-  mishaps.time_lost = std::max(0.0, 1 - processor_time / wall_time);
+  for (const Kernel& kernel : kernels) results.kernels.push_back({kernel.name, rate_on(1, kernel.name)});
   results.noise = noise_of(results.steps);
-  return mishaps;
+  const double time_lost =
+      std::accumulate(losses.begin(), losses.end(), 0.0) / static_cast<double>(losses.size());
+  return {.errors = collector.errors, .time_lost = time_lost};
 }
 
 std::size_t bytes_of(const SceneChoice& choice) {

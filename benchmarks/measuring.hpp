@@ -10,7 +10,7 @@
 namespace mpm::bench {
 
 struct Effort {
-  int repetitions = 5;
+  int repetitions = 7;
   double seconds_each = 0.3;  ///< least time of one repetition [s]
 };
 
@@ -20,13 +20,13 @@ using Progress = std::function<void(const std::string&)>;
 /// What may make the results worth less.
 struct Mishaps {
   std::vector<std::string> errors;  ///< what could not be measured and why, one line each
-  /// Wall time in which single-threaded benchmarks were not running, over all of theirs [-]: other programs
-  /// had the core. Above a few per cent the rates are too low.
+  /// Share of the time that single-threaded benchmarks lost to other programs, in the repetitions that count:
+  /// their mean [-]. Above `bearable_loss` the rates are too low.
   double time_lost = 0.0;
 };
 
 /// Measures the machine's limits, steps and kernels in repetitions that take turns in random order, and puts
-/// them into `results`.
+/// them into `results`. Of the single-threaded ones the least disturbed repetitions count.
 Mishaps measure(const std::vector<StepBenchmark>& steps, const std::vector<Kernel>& kernels,
                 const Effort& effort, const Progress& progress, Results& results);
 

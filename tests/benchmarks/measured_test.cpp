@@ -31,5 +31,25 @@ TEST(Measured, a_summary_keeps_the_extremes) {
   EXPECT_DOUBLE_EQ(summary.spread(), 4.0 / 11.0);
 }
 
+std::vector<double> kept_rates(const std::vector<Repetition>& all) {
+  std::vector<double> rates;
+  for (const Repetition& repetition : least_disturbed(all)) rates.push_back(repetition.rate);
+  return rates;
+}
+
+TEST(Measured, disturbed_repetitions_do_not_count) {
+  EXPECT_EQ(kept_rates({{1, 0.5}, {2, 0.0}, {3, 0.01}, {4, 0.1}, {5, 0.02}, {6, 0.0}}),
+            (std::vector<double>{2, 6, 3, 5}));
+}
+
+TEST(Measured, the_three_least_disturbed_count_in_any_case) {
+  EXPECT_EQ(kept_rates({{9, 0.5}, {1, 0.3}, {2, 0.4}, {3, 0.0}}), (std::vector<double>{3, 1, 2}));
+  EXPECT_EQ(kept_rates({{9, 0.5}, {8, 0.1}}), (std::vector<double>{8, 9}));
+}
+
+TEST(Measured, slow_repetitions_count_like_others) {
+  EXPECT_EQ(kept_rates({{1, 0.0}, {100, 0.0}, {99, 0.0}, {98, 0.0}}).size(), 4u);
+}
+
 }  // namespace
 }  // namespace mpm::bench
