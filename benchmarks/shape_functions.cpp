@@ -1,49 +1,52 @@
 #include "solver/shape_functions.hpp"
 
-#include <benchmark/benchmark.h>
+#include "benchmarks/suite.hpp"
 
-#include <cmath>
-#include <vector>
-
+namespace mpm::bench {
 namespace {
 
-using namespace mpm;
+constexpr std::size_t particles = 1024;
 
-/// Positions and half sizes in cells, spread over a cell so that no branch is always taken the same way.
+/// Places above the first node and half sizes, in cells, spread over a cell.
+template <class Real>
 struct Places {
-  std::vector<double> position, half_size;
-};
+  std::vector<Real> place, half_size;
 
-Places spread_places(std::size_t count) {
-  Places places;
-  for (std::size_t p = 0; p < count; ++p) {
-    const double share = static_cast<double>((p * 37) % count) / static_cast<double>(count);
-    places.position.push_back(2.0 + static_cast<double>(p) + share);
-    places.half_size.push_back(0.3 + 0.4 * share);
-  }
-  return places;
-}
-
-/// Weights and gradients of 1024 particles along one axis.
-template <class Shape>
-void weights(benchmark::State& state) {
-  const Places places = spread_places(1024);
-  std::array<double, Shape::width> weight{}, gradient{};
-  for (auto _ : state) {
-    for (std::size_t p = 0; p < places.position.size(); ++p) {
-      const double above_cell = places.position[p] - std::floor(places.position[p]);
-      Shape::evaluate(above_cell + Shape::nodes_before, places.half_size[p], 1.0, weight, gradient);
-      // A pointer and a clobber: passing a mutable double by reference can zero it with this compiler.
-      benchmark::DoNotOptimize(weight.data());
-      benchmark::DoNotOptimize(gradient.data());
-      benchmark::ClobberMemory();
+  explicit Places(int nodes_before) {
+    for (std::size_t p = 0; p < particles; ++p) {
+      const double share = static_cast<double>((p * 37) % particles) / static_cast<double>(particles);
+      place.push_back(static_cast<Real>(nodes_before + share));
+      half_size.push_back(static_cast<Real>(0.3 + 0.4 * share));
     }
   }
-  state.counters["particles/s"] = benchmark::Counter(
-      static_cast<double>(state.iterations()) * static_cast<double>(places.position.size()), benchmark::Counter::kIsRate);
+};
+
+/// Weights and gradients of lanes of particles along one axis.
+template <class Shape, class Real>
+void weights(benchmark::State& state) {
+  using Value = Lanes<Real>;
+  constexpr std::size_t lanes = lane_count<Real>;
+  const Places<Real> places(Shape::nodes_before);
+  std::vector<std::array<Value, Shape::width>> weight(particles / lanes), gradient(particles / lanes);
+  for ([[maybe_unused]] auto iteration : state) {
+    for (std::size_t k = 0; k < particles / lanes; ++k) {
+      Shape::evaluate(load<Value>(&places.place[k * lanes]), load<Value>(&places.half_size[k * lanes]),
+                      Real(100), weight[k], gradient[k]);
+    }
+    // Pointers and a clobber: passing a mutable number by reference can zero it with g++ 12.
+    benchmark::DoNotOptimize(weight.data());
+    benchmark::DoNotOptimize(gradient.data());
+    benchmark::ClobberMemory();
+  }
+  state.counters[units_counter] = static_cast<double>(particles);
 }
 
 }  // namespace
 
-BENCHMARK(weights<LinearShape>)->Name("shape_function/linear");
-BENCHMARK(weights<GimpShape>)->Name("shape_function/gimp");
+std::vector<Kernel> shape_function_kernels() {
+  return {{"weights/linear/float64", weights<LinearShape, double>},
+          {"weights/gimp/float64", weights<GimpShape, double>},
+          {"weights/gimp/float32", weights<GimpShape, float>}};
+}
+
+}  // namespace mpm::bench

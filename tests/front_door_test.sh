@@ -210,7 +210,10 @@ set_up
 open_door test -L unit; expect_code 0; expect_in calls '-L unit'; expect_in out '100% tests passed'
 FAKE_VERDICT=8 open_door test; expect_code 1
 FAKE_VERDICT=1 open_door test; expect_code 2
-open_door bench --benchmark_filter=step; expect_code 0; expect_in out '<--benchmark_filter=step>'
+open_door bench --filter 'footing/.*/1$' --quick; expect_code 0
+printf '<%s>\n' --filter 'footing/.*/1$' --quick >"$place/expected"
+sed 1d "$place/out" | cmp -s - "$place/expected" || wrong 'the arguments are not the same'
+FAKE_VERDICT=1 open_door bench --compare old.json new.json; expect_code 1
 
 about='nearly no environment, and no standard input'
 set_up
