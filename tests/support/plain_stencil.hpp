@@ -24,7 +24,13 @@ class PlainStencil {
 
   /// `half_size` is not read by schemes without domains.
   PlainStencil(const Grid<Dim, Real>& grid, const Vector<Dim, Real>& position,
-               const Vector<Dim, Real>& half_size) {
+               const Vector<Dim, Real>& half_size)
+      : PlainStencil(grid, position, half_size, [](Real) { return Real(0); }) {}
+
+  /// With weights along an axis and their gradients off by `error(size)`, where they are not zero.
+  template <class Error>
+  PlainStencil(const Grid<Dim, Real>& grid, const Vector<Dim, Real>& position,
+               const Vector<Dim, Real>& half_size, Error&& error) {
     std::array<std::int32_t, Dim> first;
     std::array<std::array<Real, Shape::width>, Dim> weight, gradient;
     for (std::size_t a = 0; a < Dim; ++a) {
@@ -32,6 +38,8 @@ class PlainStencil {
       first[a] = static_cast<std::int32_t>(place) - Shape::nodes_before;
       Shape::evaluate(place - static_cast<Real>(first[a]), half_size[a] * grid.cells_per_length(), weight[a],
                       gradient[a]);
+      for (Real& value : weight[a]) value += value != 0 ? error(Real(1)) : Real(0);
+      for (Real& value : gradient[a]) value += value != 0 ? error(Real(1)) : Real(0);
     }
     for (std::size_t k = 0; k < count; ++k) {
       const std::size_t i = k % Shape::width, j = k / Shape::width;
