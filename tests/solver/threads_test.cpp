@@ -186,7 +186,7 @@ class Threads : public testing::TestWithParam<Method> {};
 
 TEST_P(Threads, ChangeNoBit) {
   const Scene scene = pile(GetParam().scheme, GetParam().order, GetParam().precision);
-  constexpr int steps = 80;
+  constexpr int steps = 40;
   const Seen alone = run(scene, 1, steps);
   EXPECT_GE(alone.fields.mass.size(), 6000U);
   EXPECT_EQ(alone.steps, steps);
