@@ -1,0 +1,67 @@
+#pragma once
+
+#include <array>
+
+#include "solver/grid.hpp"
+#include "solver/shape_functions.hpp"
+
+namespace mpm::test {
+
+/// A node as one particle sees it.
+template <int Dim, class Real>
+struct SeenNode {
+  Eigen::Index node;
+  Real weight;                 ///< [-]
+  Vector<Dim, Real> gradient;  ///< of the weight [1/m]
+};
+
+/// The nodes that a particle reaches, with weights from its own place and half sizes alone.
+template <int Dim, class Real, Scheme scheme>
+class PlainStencil {
+ public:
+  using Shape = typename SchemeTraits<scheme>::Shape;
+  static constexpr std::size_t count = Dim == 1 ? Shape::width : Shape::width * Shape::width;
+
+  /// `half_size` is not read by schemes without domains.
+  PlainStencil(const Grid<Dim, Real>& grid, const Vector<Dim, Real>& position,
+               const Vector<Dim, Real>& half_size)
+      : PlainStencil(grid, position, half_size, [](Real) { return Real(0); }) {}
+
+  /// With weights along an axis and their gradients off by `error(size)`, where they are not zero.
+  template <class Error>
+  PlainStencil(const Grid<Dim, Real>& grid, const Vector<Dim, Real>& position,
+               const Vector<Dim, Real>& half_size, Error&& error) {
+    std::array<std::int32_t, Dim> first;
+    std::array<std::array<Real, Shape::width>, Dim> weight, gradient;
+    for (std::size_t a = 0; a < Dim; ++a) {
+      const Real place = (position[a] - grid.origin(static_cast<int>(a))) * grid.cells_per_length();
+      first[a] = static_cast<std::int32_t>(place) - Shape::nodes_before;
+      Shape::evaluate(place - static_cast<Real>(first[a]), half_size[a] * grid.cells_per_length(), weight[a],
+                      gradient[a]);
+      for (Real& value : weight[a]) value += value != 0 ? error(Real(1)) : Real(0);
+      for (Real& value : gradient[a]) value += value != 0 ? error(Real(1)) : Real(0);
+    }
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::size_t i = k % Shape::width, j = k / Shape::width;
+      SeenNode<Dim, Real>& seen = nodes_[k];
+      seen.node = first[0] + static_cast<Eigen::Index>(i);
+      if constexpr (Dim == 1) {
+        seen.weight = weight[0][i];
+        seen.gradient[0] = gradient[0][i] * grid.cells_per_length();
+      } else {
+        seen.node += (first[1] + static_cast<Eigen::Index>(j)) * grid.row_stride();
+        seen.weight = weight[0][i] * weight[1][j];
+        seen.gradient[0] = gradient[0][i] * weight[1][j] * grid.cells_per_length();
+        seen.gradient[1] = weight[0][i] * gradient[1][j] * grid.cells_per_length();
+      }
+    }
+  }
+
+  auto begin() const { return nodes_.begin(); }
+  auto end() const { return nodes_.end(); }
+
+ private:
+  std::array<SeenNode<Dim, Real>, count> nodes_;
+};
+
+}  // namespace mpm::test
