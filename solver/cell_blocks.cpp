@@ -101,7 +101,7 @@ template <int Dim, class Real>
 void CellBlocks<Dim, Real>::move_fields(const Grid<Dim, Real>& grid, Particles<Dim, Real>& particles,
                                         Eigen::Index slots) {
   const Eigen::Index capacity =
-      slots <= particles.slots() ? particles.slots() : slots + std::max<Eigen::Index>(slots / 16, 16 * lanes);
+      slots <= particles.slots() ? particles.slots() : slots + std::max<Eigen::Index>(slots / 64, 16 * lanes);
   particles.for_each_field([&](Field<Real>& field, Real empty) {
     moved_.resize(capacity);
     for (Eigen::Index slot = 0; slot < slots; ++slot) {
@@ -111,15 +111,13 @@ void CellBlocks<Dim, Real>::move_fields(const Grid<Dim, Real>& grid, Particles<D
     moved_.tail(capacity - slots).setConstant(empty);
     field.swap(moved_);
   });
-  new_id_.resize(static_cast<std::size_t>(capacity));
-  std::fill(new_id_.begin() + slots, new_id_.end(), -1);
   for (Eigen::Index slot = 0; slot < slots; ++slot) {
-    const std::int32_t from = source_[static_cast<std::size_t>(slot)];
-    const std::int32_t id = from < 0 ? -1 : particles.id[static_cast<std::size_t>(from)];
-    new_id_[static_cast<std::size_t>(slot)] = id;
-    if (id >= 0) particles.slot_of[static_cast<std::size_t>(id)] = slot;
+    std::int32_t& from = source_[static_cast<std::size_t>(slot)];
+    from = from < 0 ? -1 : particles.id[static_cast<std::size_t>(from)];  // from now on, who it is
+    if (from >= 0) particles.slot_of[static_cast<std::size_t>(from)] = static_cast<std::int32_t>(slot);
   }
-  particles.id.swap(new_id_);
+  source_.resize(static_cast<std::size_t>(capacity), -1);
+  particles.id.swap(source_);
   for (const Block& block : blocks_) {
     for (Eigen::Index k = 0; k < Eigen::Index(block.depth) * lanes; ++k) {
       const Eigen::Index slot = block.first_slot + k;

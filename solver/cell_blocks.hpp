@@ -69,7 +69,7 @@ class CellBlocks {
   Rows active_rows_;
   std::vector<std::int32_t> in_cell_;          ///< [cell] particles of a body
   std::vector<Eigen::Index> first_slot_of_;    ///< [block of the grid]
-  std::vector<std::int32_t> source_, new_id_;  ///< [new slot]
+  std::vector<std::int32_t> source_;           ///< [new slot] old slot, -1 for none
   std::vector<Eigen::Index> in_row_;           ///< [row] particles
   Field<Real> moved_;
 };

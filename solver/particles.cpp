@@ -119,7 +119,7 @@ Particles<Dim, Real> fill_bodies(const Scene& scene, bool with_domain) {
   particles.id.resize(static_cast<std::size_t>(total));
   std::iota(particles.id.begin(), particles.id.end(), 0);
   particles.slot_of.resize(static_cast<std::size_t>(total));
-  std::iota(particles.slot_of.begin(), particles.slot_of.end(), Eigen::Index(0));
+  std::iota(particles.slot_of.begin(), particles.slot_of.end(), 0);
   return particles;
 }
 

@@ -39,7 +39,7 @@ struct Particles {
   Field<Real> volume;            ///< current [m^Dim]
   Field<Real> initial_volume;    ///< [m^Dim]
   std::vector<std::int32_t> id;  ///< of the particle in a slot, in the order of filling; -1 in an empty one
-  std::vector<Eigen::Index> slot_of;  ///< [id]
+  std::vector<std::int32_t> slot_of;  ///< [id]
   std::vector<ParticleRange> bodies;  ///< slots of each body
 
   Eigen::Index count() const { return static_cast<Eigen::Index>(slot_of.size()); }

@@ -34,7 +34,7 @@ double time_step_of(const Scene& scene) {
 /// [particle * components + component], particles in the order of their filling; zeros for absent fields.
 template <class Real, std::size_t Components>
 std::vector<double> interleave(const std::array<Field<Real>, Components>& fields,
-                               const std::vector<Eigen::Index>& slot_of) {
+                               const std::vector<std::int32_t>& slot_of) {
   std::vector<double> all(slot_of.size() * Components, 0.0);
   for (std::size_t c = 0; c < Components; ++c) {
     for (std::size_t p = 0; fields[c].size() > 0 && p < slot_of.size(); ++p) {
@@ -45,7 +45,7 @@ std::vector<double> interleave(const std::array<Field<Real>, Components>& fields
 }
 
 template <class Real>
-std::vector<double> to_doubles(const Field<Real>& field, const std::vector<Eigen::Index>& slot_of) {
+std::vector<double> to_doubles(const Field<Real>& field, const std::vector<std::int32_t>& slot_of) {
   std::vector<double> all(slot_of.size());
   std::transform(slot_of.begin(), slot_of.end(), all.begin(),
                  [&](Eigen::Index slot) { return static_cast<double>(field[slot]); });
@@ -164,8 +164,7 @@ class Simulation::EngineOf final : public Simulation::Engine {
  public:
   EngineOf(const Scene& description, int threads)
       : Engine(description),
-        stepper_(description, time_step(), threads),
-        start_(interleave(stepper_.particles().position, stepper_.particles().slot_of)) {}
+        stepper_(description, time_step(), threads) {}
 
   std::int64_t particle_count() const override { return stepper_.particles().count(); }
   std::int64_t cell_crossings() const override { return stepper_.cell_crossings(); }
@@ -188,7 +187,7 @@ class Simulation::EngineOf final : public Simulation::Engine {
     const Particles<Dim, Real>& p = stepper_.particles();
     ParticleFields fields;
     fields.dimension = Dim;
-    fields.initial_position = start_;
+    fields.initial_position = initial_positions();
     fields.displacement = interleave(p.displacement, p.slot_of);
     fields.position = interleave(p.position, p.slot_of);
     fields.velocity = interleave(p.velocity, p.slot_of);
@@ -241,6 +240,20 @@ class Simulation::EngineOf final : public Simulation::Engine {
   }
 
  private:
+  /// Where the bodies were filled, [particle * dimension + axis]: made again, because few ask and it would be
+  /// a tenth of the memory.
+  std::vector<double> initial_positions() const {
+    std::vector<double> all;
+    for (const Body& body : scene().bodies) {
+      for (const PerAxis& center : lattice_of(scene(), body).centers) {
+        for (std::size_t a = 0; a < Dim; ++a) {
+          all.push_back(static_cast<double>(static_cast<Real>(center[a])));
+        }
+      }
+    }
+    return all;
+  }
+
   /// Weight of everything under full gravity [N].
   double weight() const {
     double squares = 0.0;
@@ -249,7 +262,6 @@ class Simulation::EngineOf final : public Simulation::Engine {
   }
 
   TimeStepper<Dim, Real, scheme> stepper_;
-  std::vector<double> start_;  ///< positions, [particle * dimension + axis]
 };
 
 Simulation::Simulation(const Scene& scene, int threads) {

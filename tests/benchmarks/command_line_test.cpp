@@ -144,7 +144,8 @@ TEST_F(BenchTest, counts_the_memory_of_a_scene) {
   EXPECT_GT(small, 10'000u * 9 * sizeof(double));
   EXPECT_LT(small, 10'000u * 3500);
   EXPECT_NEAR(static_cast<double>(large) / static_cast<double>(small), 4.0, 0.4);
-  EXPECT_NEAR(static_cast<double>(single) / static_cast<double>(large), 0.5, 0.05);
+  // Half the numbers, but as many indices, and more empty slots beside bodies in twice as many lanes.
+  EXPECT_NEAR(static_cast<double>(single) / static_cast<double>(large), 0.58, 0.08);
 }
 
 }  // namespace
