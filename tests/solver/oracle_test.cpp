@@ -365,6 +365,21 @@ TEST(Strays, ThatGoFarUpPutAllInOrderThoughTheyAreFew) {
   });
 }
 
+TEST(Strays, ThatGoFarDownPutAllInOrderThoughTheyAreFew) {
+  Scene scene = bullet({0.0, -4.0});
+  scene.bodies[0].lower[1] = 1.0;
+  scene.bodies[0].upper[1] = 1.7;
+  scene.bodies[1].lower[1] = 0.5;
+  scene.bodies[1].upper[1] = 0.6;
+  in_every_method(scene, [](const Scene& falling) {
+    const Met met = compare(falling, 60, 1);
+    EXPECT_TRUE(met.was_compared_to_end);
+    EXPECT_GT(met.arrangements, 0);
+    EXPECT_GE(met.farthest, 3);
+    EXPECT_LE(met.most_away_before_order, 4);
+  });
+}
+
 TEST(Strays, ThatGoFarAlongARowNeedNoOrder) {
   in_every_method(bullet({5.0, 0.0}), [](const Scene& scene) {
     const Met met = compare(scene, 60, 1);
