@@ -59,10 +59,10 @@ StepCost cost(Scheme scheme, UpdateOrder order, Law law, Precision precision = P
 }
 
 TEST(StepCost, adds_up_for_the_simplest_step) {
-  // MPM, USL, one dimension, one particle a node, counted by hand, in doubles. Particles: place, mass, velocity,
-  // volume and stress are read to be scattered (5); place, velocity, displacement, mass, stress and both volumes
-  // are read to be updated (7), and all but mass and initial volume written (5). Nodes, of 3 sums and 2 motions:
-  // cleared 3, scattered to 6, gravity 3, acceleration 5, gathered from 2.
+  // MPM, USL, one dimension, one particle a node, counted by hand, in doubles. Particles: place, mass,
+  // velocity, volume and stress are read to be scattered (5); place, velocity, displacement, mass, stress and
+  // both volumes are read to be updated (7), and all but mass and initial volume written (5). Nodes, of 3
+  // sums and 2 motions: cleared 3, scattered to 6, gravity 3, acceleration 5, gathered from 2.
   const StepCost column = step_cost({.model = SceneChoice::Model::column,
                                      .scheme = Scheme::mpm,
                                      .order = UpdateOrder::usl,

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "solver/grid.hpp"
 #include "solver/shape_functions.hpp"
@@ -15,7 +17,8 @@ struct SeenNode {
   Vector<Dim, Real> gradient;  ///< of the weight [1/m]
 };
 
-/// The nodes that a particle reaches, with weights from its own place and half sizes alone.
+/// The nodes that a particle reaches, with weights from its own place and half sizes alone, as the definition
+/// of the shape functions has them, with every case.
 template <int Dim, class Real, Scheme scheme>
 class PlainStencil {
  public:
@@ -36,8 +39,17 @@ class PlainStencil {
     for (std::size_t a = 0; a < Dim; ++a) {
       const Real place = (position[a] - grid.origin(static_cast<int>(a))) * grid.cells_per_length();
       first[a] = static_cast<std::int32_t>(place) - Shape::nodes_before;
-      Shape::evaluate(place - static_cast<Real>(first[a]), half_size[a] * grid.cells_per_length(), weight[a],
-                      gradient[a]);
+      for (std::size_t k = 0; k < Shape::width; ++k) {
+        const Real distance = place - static_cast<Real>(first[a] + static_cast<std::int32_t>(k));
+        const Real size = half_size[a] * grid.cells_per_length();
+        if constexpr (SchemeTraits<scheme>::has_domain) {
+          weight[a][k] = (hat_integral(distance + size) - hat_integral(distance - size)) / (2 * size);
+          gradient[a][k] = (hat(distance + size) - hat(distance - size)) / (2 * size);
+        } else {
+          weight[a][k] = hat(distance);
+          gradient[a][k] = k == 0 ? Real(-1) : Real(1);
+        }
+      }
       for (Real& value : weight[a]) value += value != 0 ? error(Real(1)) : Real(0);
       for (Real& value : gradient[a]) value += value != 0 ? error(Real(1)) : Real(0);
     }
@@ -61,6 +73,14 @@ class PlainStencil {
   auto end() const { return nodes_.end(); }
 
  private:
+  /// N(d) = max(0, 1 - |d|).
+  static Real hat(Real d) { return std::max(Real(0), 1 - std::abs(d)); }
+  /// Integral of the hat from 0 to t.
+  static Real hat_integral(Real t) {
+    const Real inside = std::clamp(t, Real(-1), Real(1));
+    return inside * (1 - std::abs(inside) / 2);
+  }
+
   std::array<SeenNode<Dim, Real>, count> nodes_;
 };
 
