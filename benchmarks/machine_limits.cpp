@@ -8,6 +8,7 @@
 #include <experimental/simd>
 #include <numeric>
 #include <stdexcept>
+#include <thread>
 
 namespace mpm::bench {
 namespace {
@@ -35,24 +36,35 @@ void triad(benchmark::State& state, std::size_t bytes) {
 
 // ---- multiply-add ----
 
-void fma_peak(benchmark::State& state) {
-  using Lanes = stdx::native_simd<double>;
-  // Two units with a latency of four or five cycles need ten chains; with two constants more, twelve still
-  // fit the sixteen registers of AVX2.
-  constexpr std::size_t chains = 12;
-  constexpr int rounds = 2000;
+using Widest = stdx::native_simd<double>;
+// Two units with a latency of four or five cycles need ten chains; with two constants more, twelve still fit
+// the sixteen registers of AVX2.
+constexpr std::size_t chains = 12;
+constexpr int rounds = 2000;
+
+void multiply_and_add() {
   // Every chain tends to addend / (1 - factor), so no number becomes large or denormal.
   const volatile double opaque_factor = 0.5, opaque_addend = 1.0;
-  const Lanes factor = opaque_factor, addend = opaque_addend;
-  for ([[maybe_unused]] auto iteration : state) {
-    std::array<Lanes, chains> sums;
-    for (std::size_t k = 0; k < chains; ++k) sums[k] = static_cast<double>(k);
-    for (int round = 0; round < rounds; ++round) {
-      for (Lanes& sum : sums) sum = sum * factor + addend;
-    }
-    consume(stdx::reduce(std::accumulate(sums.begin(), sums.end(), Lanes(0.0))));
+  const Widest factor = opaque_factor, addend = opaque_addend;
+  std::array<Widest, chains> sums;
+  for (std::size_t k = 0; k < chains; ++k) sums[k] = static_cast<double>(k);
+  for (int round = 0; round < rounds; ++round) {
+    for (Widest& sum : sums) sum = sum * factor + addend;
   }
-  state.counters[units_counter] = 2.0 * rounds * static_cast<double>(chains * Lanes::size());
+  consume(stdx::reduce(std::accumulate(sums.begin(), sums.end(), Widest(0.0))));
+}
+
+void fma_peak(benchmark::State& state) {
+  for ([[maybe_unused]] auto iteration : state) multiply_and_add();
+  state.counters[units_counter] = 2.0 * rounds * static_cast<double>(chains * Widest::size());
+}
+
+/// While another thread does the same.
+void fma_beside(benchmark::State& state) {
+  const std::jthread other([](const std::stop_token& stop) {
+    while (!stop.stop_requested()) multiply_and_add();
+  });
+  fma_peak(state);
 }
 
 // ---- scatter and gather ----
@@ -151,6 +163,7 @@ std::vector<LimitProbe> limit_probes() {
           {"triad_l3", "triad in L3", "B/s", triad_of(std::max(l3 / 4, 2 * l2))},
           {"triad_memory", "triad from memory", "B/s", triad_of(std::max(std::min(4 * l3, largest), 2 * l3))},
           {"fma_peak", "multiply-adds", "flop/s", fma_peak},
+          {"fma_beside", "the same while another core does so too", "flop/s", fma_beside},
           {"scatter", "9-node scatter of 4 numbers, sorted", "particles/s", scatter},
           {"gather", "9-node gather of 2 numbers, sorted", "particles/s", gather}};
 }

@@ -13,7 +13,7 @@ namespace mpm::bench {
 
 /// What this machine can do at best, on one core.
 struct Limit {
-  std::string name;   ///< triad_l2, triad_l3, triad_memory, fma_peak, scatter or gather
+  std::string name;   ///< triad_l2, triad_l3, triad_memory, fma_peak, fma_beside, scatter or gather
   std::string title;  ///< for a person
   std::string unit;   ///< B/s, flop/s or particles/s
   Measured rate;
@@ -35,10 +35,12 @@ struct LimitProbe {
 };
 
 /// - triad: a = b + s c, 24 bytes per element (what a cache line fetched before it is written costs besides
-/// is
-///   not counted), with arrays that together fill a quarter of the L2 cache; a quarter of L3, but at least
+///   is not counted), with arrays that together fill a quarter of the L2 cache; a quarter of L3, but at least
 ///   twice L2; and four times L3 or 256 MB, whichever is smaller, but at least twice L3.
 /// - fma_peak: chains of multiply-adds, two operations each, in the widest vectors the program was built for.
+/// - fma_beside: the same while a second thread does so too, sharing nothing. Twice this over `fma_peak` is
+/// what
+///   two threads can gain in arithmetic at all: processors share a clock, or a core, with their neighbours.
 /// - scatter: particles in the order of their cells add four doubles, weighted by products of given weights
 ///   along the axes, to 3 x 3 nodes each; 10,000 particles, four a cell.
 /// - gather: the same particles collect two doubles from 3 x 3 nodes each.

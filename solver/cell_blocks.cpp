@@ -1,6 +1,7 @@
 #include "solver/cell_blocks.hpp"
 
 #include <algorithm>
+#include <bit>
 
 namespace mpm {
 namespace {
@@ -140,8 +141,9 @@ void CellBlocks<Dim, Real>::divide_into_bands(Eigen::Index particles) {
   active_rows_ = {std::max(static_cast<std::int32_t>(first) - nodes_before_ - stray_rows, 0),
                   std::min(static_cast<std::int32_t>(last) + 2 + stray_rows, rows_)};
 
-  const Eigen::Index wanted =
-      std::clamp<Eigen::Index>(particles / particles_worth_a_band, 1, most_bands) / 2 * 2;
+  // A power of two leaves two, four or eight threads with as many bands each in either colour.
+  const auto wanted = static_cast<Eigen::Index>(std::bit_floor(static_cast<std::uint64_t>(
+      std::clamp<Eigen::Index>(particles / particles_worth_a_band, 1, most_bands))));
   std::size_t count = 0;
   Eigen::Index passed = 0;
   Rows rows{static_cast<std::int32_t>(first), static_cast<std::int32_t>(first)};

@@ -154,7 +154,7 @@ about='a report is measured first, and told what came of it'
 set_up
 open_door report; expect_code 0
 measurements="$checkout/reports/out/performance.json"
-expect_in calls "benchmarks --quick --json $measurements"; expect_in calls '--target mpmvv_program mpmvv_benchmarks'
+expect_in calls "benchmarks --quick --json $measurements --footing"; expect_in calls '--target mpmvv_program mpmvv_benchmarks'
 expect_in err 'mpmvv: measuring the speed'
 printf '<%s>\n' report --performance "$measurements" >"$place/expected"
 sed 1d "$place/out" | cmp -s - "$place/expected" || wrong 'the arguments are not these'
