@@ -559,7 +559,8 @@ std::optional<PerformanceFigure> roofline_figure(const Performance& performance)
                            "operations a particle-step "
                            "are counted, not measured. A point at a roof is bound by it; one far below all "
                            "of them waits for something "
-                           "else. What fits a cache may lie above the line of the memory.",
+                           "else. What fits a cache may lie above the line of the memory, and floats above the "
+                           "roof of the multiply-adds, which is that of doubles.",
                            std::move(plot)};
 }
 
