@@ -10,6 +10,8 @@
 #include <stdexcept>
 #include <thread>
 
+#include "benchmarks/scenes.hpp"
+
 namespace mpm::bench {
 namespace {
 
@@ -143,6 +145,25 @@ void gather(benchmark::State& state) {
   state.counters[units_counter] = static_cast<double>(particles);
 }
 
+// ---- whole steps ----
+
+Simulation paper_like() { return simulation_of(scene_of({.particles = 10'000}), 1); }
+
+void step_alone(benchmark::State& state) {
+  Simulation simulation = paper_like();
+  for ([[maybe_unused]] auto iteration : state) simulation.advance();
+  state.counters[units_counter] = static_cast<double>(simulation.particle_count());
+}
+
+/// While another thread takes steps of a simulation of its own.
+void step_beside(benchmark::State& state) {
+  const std::jthread other([](const std::stop_token& stop) {
+    Simulation simulation = paper_like();
+    while (!stop.stop_requested()) simulation.advance();
+  });
+  step_alone(state);
+}
+
 }  // namespace
 
 Caches caches() {
@@ -165,7 +186,9 @@ std::vector<LimitProbe> limit_probes() {
           {"fma_peak", "multiply-adds", "flop/s", fma_peak},
           {"fma_beside", "the same while another core does so too", "flop/s", fma_beside},
           {"scatter", "9-node scatter of 4 numbers, sorted", "particles/s", scatter},
-          {"gather", "9-node gather of 2 numbers, sorted", "particles/s", gather}};
+          {"gather", "9-node gather of 2 numbers, sorted", "particles/s", gather},
+          {"step", "a cpGIMP step of 10,000 particles", "particles/s", step_alone},
+          {"step_beside", "the same while another core does so too", "particles/s", step_beside}};
 }
 
 const Limit& limit_named(const std::vector<Limit>& limits, const std::string& name) {

@@ -13,7 +13,8 @@ namespace mpm::bench {
 
 /// What this machine can do at best, on one core.
 struct Limit {
-  std::string name;   ///< triad_l2, triad_l3, triad_memory, fma_peak, fma_beside, scatter or gather
+  std::string
+      name;  ///< triad_l2, triad_l3, triad_memory, fma_peak, fma_beside, scatter, gather, step or step_beside
   std::string title;  ///< for a person
   std::string unit;   ///< B/s, flop/s or particles/s
   Measured rate;
@@ -44,6 +45,10 @@ struct LimitProbe {
 /// - scatter: particles in the order of their cells add four doubles, weighted by products of given weights
 ///   along the axes, to 3 x 3 nodes each; 10,000 particles, four a cell.
 /// - gather: the same particles collect two doubles from 3 x 3 nodes each.
+/// - step, step_beside: a whole step (cpGIMP, MUSL, Mohr–Coulomb, 1e4 particles) alone, and while a second
+/// thread
+///   takes steps of a simulation of its own. They share nothing, so twice the second over the first is all
+///   that two threads can gain in one simulation on this machine.
 std::vector<LimitProbe> limit_probes();
 
 /// The counter of what one iteration of a benchmark does.

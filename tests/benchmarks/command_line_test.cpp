@@ -98,7 +98,7 @@ TEST_F(BenchTest, measures_writes_and_compares) {
   const Results results = read_results(first);
   ASSERT_EQ(results.steps.size(), 1u);
   ASSERT_EQ(results.kernels.size(), 1u);
-  EXPECT_EQ(results.limits.size(), 7u);
+  EXPECT_EQ(results.limits.size(), 9u);
   EXPECT_EQ(results.repetitions, 3);
   const StepResult& step = results.steps.front();
   EXPECT_EQ(step.name, "column/cpgimp/musl/linear_elastic/float64/50/1");

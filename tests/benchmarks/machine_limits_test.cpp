@@ -18,7 +18,7 @@ TEST(MachineLimits, are_positive_and_agree_with_each_other) {
   EXPECT_GE(mishaps.time_lost, 0);
   EXPECT_LT(mishaps.time_lost, 1);
   const std::vector<Limit>& limits = results.limits;
-  ASSERT_EQ(limits.size(), 7u);
+  ASSERT_EQ(limits.size(), 9u);
   for (const Limit& limit : limits) {
     EXPECT_TRUE(std::isfinite(limit.rate.high)) << limit.name;
     EXPECT_GT(limit.rate.low, 0) << limit.name;
