@@ -11,10 +11,12 @@ constexpr std::uint64_t first_of_next_round(std::uint64_t next, std::uint32_t co
 }
 
 /// Waits until a condition holds: awake at first, because the next task comes within microseconds while a run
-/// goes on; then giving way to whoever waits for the processor; then asleep.
+/// goes on; then giving way to whoever waits for the processor; asleep only after some milliseconds. Waking a
+/// virtual processor takes so long that the others fall asleep meanwhile, and a step that has once slept
+/// would go on from sleep to sleep at half its speed.
 template <class Value, class Condition>
 void wait(const std::atomic<Value>& value, Condition&& holds) {
-  constexpr int looks_awake = 4000, looks_giving_way = 200;
+  constexpr int looks_awake = 4000, looks_giving_way = 10000;
   for (int look = 0; look < looks_awake + looks_giving_way; ++look) {
     if (holds(value.load(std::memory_order_acquire))) return;
     if (look >= looks_awake) {
