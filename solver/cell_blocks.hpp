@@ -67,10 +67,10 @@ class CellBlocks {
   std::vector<std::pair<std::size_t, std::size_t>> blocks_of_body_;
   std::vector<Band> bands_;
   Rows active_rows_;
-  std::vector<std::int32_t> in_cell_;          ///< [cell] particles of a body
-  std::vector<Eigen::Index> first_slot_of_;    ///< [block of the grid]
-  std::vector<std::int32_t> source_;           ///< [new slot] old slot, -1 for none
-  std::vector<Eigen::Index> in_row_;           ///< [row] particles
+  std::vector<std::int32_t> in_cell_;        ///< [cell] particles of a body
+  std::vector<Eigen::Index> first_slot_of_;  ///< [block of the grid]
+  std::vector<std::int32_t> source_;         ///< [new slot] old slot, -1 for none
+  std::vector<Eigen::Index> in_row_;         ///< [row] particles
   Field<Real> moved_;
 };
 

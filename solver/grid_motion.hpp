@@ -74,14 +74,20 @@ void for_each_lanes_of_nodes(const Grid<Dim, Real>& grid, Rows rows, Visit&& vis
   for (Eigen::Index i = first; i < first + count; i += lane_count<Real>) visit(i);
 }
 
+/// 1 / mass of nodes [1/kg]; zero at empty ones.
+template <class Real>
+Lanes<Real> one_over(const Lanes<Real>& mass, Real empty_mass) {
+  using Value = Lanes<Real>;
+  const auto counts = mass > Value(empty_mass);
+  return select(counts, 1 / select(counts, mass, Value(1)), Value(0));
+}
+
 /// Nodal velocity from momentum [Kiriyama15, Eq. 9]; zero at empty nodes.
 template <int Dim, class Real>
 void set_velocity(Grid<Dim, Real>& grid, Real empty_mass, Rows rows) {
   using Value = Lanes<Real>;
   for_each_lanes_of_nodes(grid, rows, [&](Eigen::Index i) {
-    const Value mass = load<Value>(&grid.mass[i]);
-    const auto counts = mass > Value(empty_mass);
-    const Value over_mass = select(counts, 1 / select(counts, mass, Value(1)), Value(0));
+    const Value over_mass = one_over(load<Value>(&grid.mass[i]), empty_mass);
     for (std::size_t a = 0; a < Dim; ++a) {
       store(load<Value>(&grid.momentum[a][i]) * over_mass, &grid.velocity[a][i]);
     }
@@ -105,9 +111,7 @@ template <bool damped, int Dim, class Real>
 void accelerate(Grid<Dim, Real>& grid, Real time_step, Real damping, Real empty_mass, Rows rows) {
   using Value = Lanes<Real>;
   for_each_lanes_of_nodes(grid, rows, [&](Eigen::Index i) {
-    const Value mass = load<Value>(&grid.mass[i]);
-    const auto counts = mass > Value(empty_mass);
-    const Value over_mass = select(counts, 1 / select(counts, mass, Value(1)), Value(0));
+    const Value over_mass = one_over(load<Value>(&grid.mass[i]), empty_mass);
     for (std::size_t a = 0; a < Dim; ++a) {
       const Value velocity = load<Value>(&grid.momentum[a][i]) * over_mass;
       Value force = load<Value>(&grid.force[a][i]);

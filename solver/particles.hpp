@@ -28,7 +28,8 @@ struct Particles {
   std::array<Field<Real>, Dim> velocity;       ///< [m/s]
   std::array<Field<Real>, Dim> half_size;      ///< [m]; empty for scheme mpm
   std::array<Field<Real>, components> stress;  ///< Cauchy [Pa], tension positive
-  std::array<Field<Real>, Dim> pending;        ///< what a later pass of the same step adds; see `Transfer`
+  std::array<Field<Real>, Dim> pending;  ///< what a later pass of the same step adds, see `TimeStepper`:
+                                         ///< travel [m] in MUSL, strain increments [-] in USF with cpGIMP
   std::array<Field<Real>, components>
       strain;  ///< sum of the increments [-]; empty unless the scene asks for it
   std::array<Field<Real>, Dim * Dim>

@@ -96,20 +96,26 @@ class TimeStepper {
     bool has_fault = false, has_far_stray = false;
   };
 
-  // --- passes ---------------------------------------------------------------------------------------------
+  // --- passes ---
 
   template <Sends sends>
   void scatter() {
-    constexpr Sends with_loads{sends.mass, sends.momentum, sends.internal_force, sends.internal_force};
     for_each_block_in_two_colours([&](const Block& block, std::size_t, Log&) {
       Transfers::for_each_layers(particles_, grid_, block, [&](const Layers& layers, std::size_t count) {
-        if (loading_.has_forces()) {
-          Transfers::template scatter<with_loads>(particles_, block, layers, count, grid_);
-        } else {
-          Transfers::template scatter<sends>(particles_, block, layers, count, grid_);
-        }
+        scatter<sends>(block, layers, count);
       });
     });
+  }
+
+  /// With the internal force go the external ones of a scene that has them.
+  template <Sends sends>
+  void scatter(const Block& block, const Layers& layers, std::size_t count) {
+    constexpr Sends with_loads{sends.mass, sends.momentum, sends.internal_force, sends.internal_force};
+    if (loading_.has_forces()) {
+      Transfers::template scatter<with_loads>(particles_, block, layers, count, grid_);
+    } else {
+      Transfers::template scatter<sends>(particles_, block, layers, count, grid_);
+    }
   }
 
   void move_grid(const Vector<Dim, Real>& gravity) {
@@ -190,12 +196,7 @@ class TimeStepper {
             }
           }
         }
-        if (loading_.has_forces()) {
-          Transfers::template scatter<Sends{.internal_force = true, .external_force = true}>(
-              particles_, block, layers, count, grid_);
-        } else {
-          Transfers::template scatter<Sends{.internal_force = true}>(particles_, block, layers, count, grid_);
-        }
+        scatter<Sends{.internal_force = true}>(block, layers, count);
       });
     });
   }
@@ -217,8 +218,7 @@ class TimeStepper {
     });
   }
 
-  // --- what passes do to a layer of particles
-  // ----------------------------------------------------------------
+  // --- what passes do to a layer of particles ---
 
   /// The time step, and none in empty slots.
   Value time_step_of(Eigen::Index slot) const {
@@ -282,8 +282,7 @@ class TimeStepper {
     }
   }
 
-  // --- order
-  // -------------------------------------------------------------------------------------------------
+  // --- order ---
 
   void arrange() {
     blocks_.arrange(grid_, particles_);
@@ -313,13 +312,12 @@ class TimeStepper {
       log.crossings = log.strays = Value(0);
     }
     cell_crossings_ += static_cast<std::int64_t>(crossings);
-    // Alone, a stray costs as much as some tens of particles in lanes; putting a particle in order as much as
-    // a few steps.
+    // Putting all in order costs about a step, and a stray alone many times a particle in lanes: a few per
+    // cent of strays are worth it.
     is_disordered_ = is_disordered_ || strays * 32 > static_cast<double>(particles_.count());
   }
 
-  // --- who does what
-  // -----------------------------------------------------------------------------------------
+  // --- who does what ---
 
   /// Calls `visit(block, body, log)` for the blocks of a band.
   template <class Visit>
