@@ -1263,6 +1263,10 @@ std::string name_of_ending(const vv::Record& record) {
       return "came to rest";
     case Ending::not_at_rest:
       return "not at rest by the deadline";
+    case Ending::reached_displacement:
+      return "moved as far as asked";
+    case Ending::not_reached:
+      return "not moved so far by the deadline";
     case Ending::not_finite:
       return "a value is not finite";
     case Ending::inverted:

@@ -45,6 +45,11 @@ class Grid {
   std::array<Field<Real>, Dim> velocity;      ///< [m/s]
   std::array<Field<Real>, Dim> acceleration;  ///< [m/s^2]
 
+  /// Memory of all arrays [B].
+  std::int64_t bytes() const {
+    return static_cast<std::int64_t>((1 + 4 * Dim) * static_cast<std::size_t>(mass.size()) * sizeof(Real));
+  }
+
   /// Forgets what was scattered to some rows.
   void clear(Rows rows);
   void clear_momentum(Rows rows);

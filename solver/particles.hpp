@@ -50,22 +50,39 @@ struct Particles {
   /// are for `CellBlocks` to set.
   template <class Visit>
   void for_each_field(Visit&& visit) {
+    visit_fields(*this, visit);
+  }
+
+  /// Memory of all arrays [B].
+  std::int64_t bytes() const {
+    std::size_t sum = (id.capacity() + slot_of.capacity()) * sizeof(std::int32_t);
+    visit_fields(*this, [&](const auto& field, Real) {
+      sum += static_cast<std::size_t>(field.size()) * sizeof(Real);
+    });
+    return static_cast<std::int64_t>(sum);
+  }
+
+ private:
+  template <class Self, class Visit>
+  static void visit_fields(Self& self, Visit&& visit) {
     const auto all_of = [&](auto& fields, Real empty) {
       for (auto& field : fields) {
         if (field.size() > 0) visit(field, empty);
       }
     };
-    for (auto* fields : {&position, &displacement, &velocity, &pending, &external_force})
+    for (auto* fields :
+         {&self.position, &self.displacement, &self.velocity, &self.pending, &self.external_force})
       all_of(*fields, Real(0));
-    all_of(half_size, half_size[0].size() > 0 ? half_size[0][0] : Real(0));
-    all_of(stress, Real(0));
-    all_of(strain, Real(0));
-    for (std::size_t k = 0; k < deformation_gradient.size(); ++k) {
-      if (deformation_gradient[k].size() > 0) visit(deformation_gradient[k], Real(k % (Dim + 1) == 0));
+    all_of(self.half_size, self.half_size[0].size() > 0 ? self.half_size[0][0] : Real(0));
+    all_of(self.stress, Real(0));
+    all_of(self.strain, Real(0));
+    for (std::size_t k = 0; k < self.deformation_gradient.size(); ++k) {
+      if (self.deformation_gradient[k].size() > 0)
+        visit(self.deformation_gradient[k], Real(k % (Dim + 1) == 0));
     }
-    visit(mass, Real(0));
-    visit(volume, Real(1));
-    visit(initial_volume, Real(1));
+    visit(self.mass, Real(0));
+    visit(self.volume, Real(1));
+    visit(self.initial_volume, Real(1));
   }
 };
 

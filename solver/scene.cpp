@@ -475,10 +475,23 @@ void check_rest(const Scene& scene, const AtRest& rest) {
           "a time after the loads have settled at " + text_of(settled, "s"), text_of(rest.deadline, "s"));
 }
 
+void check_displacement(const Scene& scene, const AtDisplacement& end) {
+  const std::string place = "/termination";
+  const bool known = std::any_of(scene.bodies.begin(), scene.bodies.end(),
+                                 [&](const Body& candidate) { return candidate.name == end.body; });
+  require(known, place + "/body", "the name of a body", "\"" + end.body + "\"");
+  require(end.axis >= 0 && end.axis < scene.dimension, place + "/component", "an axis of the scene",
+          "axis " + std::to_string(end.axis));
+  require(std::isfinite(end.displacement) && end.displacement != 0.0, place + "/displacement",
+          "a length other than zero", text_of(end.displacement, "m"));
+  require_positive(end.deadline, place + "/deadline", "a time", "s");
+}
+
 void check_termination(const Scene& scene) {
   std::visit(
       Overloaded{[](const AtTime& end) { require_positive(end.time, "/termination/time", "a time", "s"); },
-                 [&](const AtRest& rest) { check_rest(scene, rest); }},
+                 [&](const AtRest& rest) { check_rest(scene, rest); },
+                 [&](const AtDisplacement& end) { check_displacement(scene, end); }},
       scene.termination);
 }
 
@@ -535,6 +548,12 @@ double loads_settled_after(const Scene& scene) {
   }
   for (const RigidBody& body : scene.rigid_bodies) latest = std::max(latest, body.start + body.ramp);
   return latest;
+}
+
+double latest_end(const Scene& scene) {
+  return std::visit(Overloaded{[](const AtTime& end) { return end.time; },
+                               [](const auto& end) { return end.deadline; }},
+                    scene.termination);
 }
 
 void check(const Scene& scene) {

@@ -182,6 +182,15 @@ struct AtRest {
   double deadline;                ///< [s]; a run not at rest by then ends with that outcome
 };
 
+/// When a body has moved so far: the mean displacement of its particles, by mass, along one axis reaches a value.
+struct AtDisplacement {
+  std::string body;     ///< its name
+  int axis = 0;         ///< of the displacement
+  double displacement;  ///< [m], with its sign; not zero
+  double deadline;      ///< [s], > 0; a run that has not moved so far by then ends with that outcome
+};
+using Termination = std::variant<AtTime, AtRest, AtDisplacement>;
+
 /// All the solver needs to know to simulate: plain values, SI units, no behaviour.
 struct Scene {
   int dimension = 1;
@@ -203,12 +212,15 @@ struct Scene {
   Gravity gravity;
   bool sums_strain = false;  ///< whether particles keep the sum of their strain increments, for fields
   std::variant<GivenTimeStep, StableFraction> time_step = StableFraction{0.2};
-  std::variant<AtTime, AtRest> termination = AtTime{1.0};
+  Termination termination = AtTime{1.0};
 };
 
 /// Time [s] from which no load on the bodies changes any more: gravity, surface loads, densities
 /// and the ramps of rigid bodies.
 double loads_settled_after(const Scene& scene);
+
+/// When a run of the scene is over at the latest [s].
+double latest_end(const Scene& scene);
 
 /// Throws SceneError for the first value that makes the scene impossible to simulate.
 void check(const Scene& scene);

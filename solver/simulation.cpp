@@ -8,8 +8,9 @@
 namespace mpm {
 namespace {
 
-/// Steps between two looks at the rest criterion: rare enough to cost nothing, often enough to stop in time.
-constexpr std::int64_t steps_between_rest_checks = 64;
+/// Steps between two looks at whether a run is over: rare enough to cost nothing, often enough to stop in
+/// time.
+constexpr std::int64_t steps_between_looks = 64;
 
 double fastest_wave(const Scene& scene) {
   const auto modulus = [&](const Material& material) {
@@ -75,6 +76,10 @@ const char* name_of(Ending ending) {
       return "at_rest";
     case Ending::not_at_rest:
       return "not_at_rest";
+    case Ending::reached_displacement:
+      return "reached_displacement";
+    case Ending::not_reached:
+      return "not_reached";
     case Ending::not_finite:
       return "not_finite";
     case Ending::inverted:
@@ -97,6 +102,7 @@ class Simulation::Engine {
   virtual std::int64_t particle_count() const = 0;
   virtual std::int64_t cell_crossings() const = 0;
   virtual std::int64_t arrangements() const = 0;
+  virtual std::int64_t memory() const = 0;
   virtual Monitor monitor() const = 0;
   virtual ParticleFields particles() const = 0;
   virtual std::vector<RigidBodyState> rigid_bodies() const = 0;
@@ -124,6 +130,8 @@ class Simulation::Engine {
   virtual bool step(double time, double gravity_level) = 0;
   /// Calls `fail` if a particle is in a state that has no next step. True if so.
   virtual bool look_for_fault() = 0;
+  /// Of a body's particles, by mass, along an axis [m].
+  virtual double mean_displacement(std::size_t body, std::size_t axis) const = 0;
 
   void fail(Ending ending, Eigen::Index particle, double value) {
     outcome_.ending = ending;
@@ -136,12 +144,13 @@ class Simulation::Engine {
 
  private:
   bool is_finished() {
-    if (const auto* at_time = std::get_if<AtTime>(&scene_.termination)) {
-      // Half a step of slack: the end time is reached by the step nearest to it.
-      return outcome_.time > at_time->time - 0.5 * time_step_;
-    }
-    const AtRest& rest = std::get<AtRest>(scene_.termination);
-    if (outcome_.time >= loads_settled_after_ && outcome_.step % steps_between_rest_checks == 0) {
+    return std::visit([&](const auto& end) { return is_finished(end); }, scene_.termination);
+  }
+
+  bool is_finished(const AtTime& end) const { return is_past(end.time); }
+
+  bool is_finished(const AtRest& rest) {
+    if (outcome_.time >= loads_settled_after_ && outcome_.step % steps_between_looks == 0) {
       const Monitor now = monitor();
       outcome_.ending = Ending::at_rest;
       if (now.unbalanced_force_ratio <= rest.unbalanced_force_ratio &&
@@ -150,8 +159,24 @@ class Simulation::Engine {
       }
     }
     outcome_.ending = Ending::not_at_rest;
-    return outcome_.time > rest.deadline - 0.5 * time_step_;
+    return is_past(rest.deadline);
   }
+
+  bool is_finished(const AtDisplacement& end) {
+    if (outcome_.step % steps_between_looks == 0) {
+      const auto body = std::find_if(scene_.bodies.begin(), scene_.bodies.end(),
+                                     [&](const Body& candidate) { return candidate.name == end.body; });
+      const double moved = mean_displacement(static_cast<std::size_t>(body - scene_.bodies.begin()),
+                                             static_cast<std::size_t>(end.axis));
+      outcome_.ending = Ending::reached_displacement;
+      if (end.displacement > 0.0 ? moved >= end.displacement : moved <= end.displacement) return true;
+    }
+    outcome_.ending = Ending::not_reached;
+    return is_past(end.deadline);
+  }
+
+  /// Half a step of slack: a time is reached by the step nearest to it.
+  bool is_past(double time) const { return outcome_.time > time - 0.5 * time_step_; }
 
   Scene scene_;
   double time_step_, loads_settled_after_;
@@ -163,12 +188,12 @@ template <int Dim, class Real, Scheme scheme>
 class Simulation::EngineOf final : public Simulation::Engine {
  public:
   EngineOf(const Scene& description, int threads)
-      : Engine(description),
-        stepper_(description, time_step(), threads) {}
+      : Engine(description), stepper_(description, time_step(), threads) {}
 
   std::int64_t particle_count() const override { return stepper_.particles().count(); }
   std::int64_t cell_crossings() const override { return stepper_.cell_crossings(); }
   std::int64_t arrangements() const override { return stepper_.arrangements(); }
+  std::int64_t memory() const override { return stepper_.bytes(); }
 
   Monitor monitor() const override {
     const Grid<Dim, Real>& grid = stepper_.grid();
@@ -239,6 +264,16 @@ class Simulation::EngineOf final : public Simulation::Engine {
     return true;
   }
 
+  double mean_displacement(std::size_t body, std::size_t axis) const override {
+    const Particles<Dim, Real>& p = stepper_.particles();
+    double moment = 0.0, mass = 0.0;
+    for (Eigen::Index slot = p.bodies[body].first; slot < p.bodies[body].last; ++slot) {
+      moment += static_cast<double>(p.mass[slot]) * static_cast<double>(p.displacement[axis][slot]);
+      mass += static_cast<double>(p.mass[slot]);
+    }
+    return moment / mass;
+  }
+
  private:
   /// Where the bodies were filled, [particle * dimension + axis]: made again, because few ask and it would be
   /// a tenth of the memory.
@@ -297,6 +332,7 @@ std::int64_t Simulation::steps() const { return engine_->outcome().step; }
 std::int64_t Simulation::particle_count() const { return engine_->particle_count(); }
 std::int64_t Simulation::cell_crossings() const { return engine_->cell_crossings(); }
 std::int64_t Simulation::arrangements() const { return engine_->arrangements(); }
+std::int64_t Simulation::memory() const { return engine_->memory(); }
 Monitor Simulation::monitor() const { return engine_->monitor(); }
 ParticleFields Simulation::particles() const { return engine_->particles(); }
 std::vector<RigidBodyState> Simulation::rigid_bodies() const { return engine_->rigid_bodies(); }

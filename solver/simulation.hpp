@@ -14,6 +14,8 @@ enum class Ending {
   reached_time,      ///< the end time asked for
   at_rest,           ///< the rest criterion was met
   not_at_rest,       ///< the deadline came first
+  reached_displacement,  ///< the body has moved as far as asked for
+  not_reached,           ///< the deadline came first
   not_finite,        ///< a particle's position, velocity or stress is not a finite number
   inverted,          ///< a particle's volume is not positive
   outside_grid,      ///< a particle's domain left the grid
@@ -31,7 +33,9 @@ struct Outcome {
   double value = 0.0;          ///< the offending value in SI units; 0 without a numerical failure
 
   /// The run ended where it was meant to: its state can be judged.
-  bool completed() const { return ending == Ending::reached_time || ending == Ending::at_rest; }
+  bool completed() const { 
+    return ending == Ending::reached_time || ending == Ending::at_rest || ending == Ending::reached_displacement;
+  }
 };
 
 /// A copy of the particles for an observer, in double precision whatever the run's own.
@@ -86,6 +90,7 @@ class Simulation {
   std::int64_t particle_count() const;
   std::int64_t cell_crossings() const;  ///< particle centres that changed cell so far, summed over steps
   std::int64_t arrangements() const;    ///< how often the particles have been put in the order of their cells
+  std::int64_t memory() const;          ///< of particles and nodes [B], which is nearly all there is
   Monitor monitor() const;
   ParticleFields particles() const;
   std::vector<RigidBodyState> rigid_bodies() const;  ///< in the order of the scene

@@ -76,6 +76,8 @@ class TimeStepper {
   std::int64_t cell_crossings() const { return cell_crossings_; }
   /// How often the particles have been put in order.
   std::int64_t arrangements() const { return arrangements_; }
+  /// Memory of particles and nodes [B].
+  std::int64_t bytes() const { return particles_.bytes() + grid_.bytes(); }
   /// Of the last step [N]; see Transfer::unbalanced_force.
   double unbalanced_force() const { return Transfers::unbalanced_force(particles_, grid_, empty_mass_); }
   typename Transfer<Dim, Real, scheme>::Fault find_fault() const {

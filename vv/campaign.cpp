@@ -154,22 +154,23 @@ struct Job {
 
 using Jobs = std::vector<std::unique_ptr<Job>>;
 
-/// Draws how far the jobs are on the terminal; writes nothing when standard error is no terminal.
+/// Tells on standard error how far the jobs are: a bar on a terminal, elsewhere a plain line now and then, of
+/// which short campaigns get none.
 class Progress {
  public:
-  explicit Progress(const std::vector<Job*>& jobs)
-      : jobs_(jobs), visible_(::isatty(STDERR_FILENO) == 1 && !jobs.empty()) {
+  explicit Progress(const std::vector<Job*>& jobs) : jobs_(jobs), on_terminal_(::isatty(STDERR_FILENO) == 1) {
     for (const Job* job : jobs_) estimated_ += job->estimate;
   }
   ~Progress() {
-    if (visible_) std::fputs("\r\033[K", stderr);
+    if (on_terminal_) std::fputs("\r\033[K", stderr);
   }
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
   /// `finished` counts jobs that are done.
-  void draw(std::size_t finished, const std::vector<std::atomic<bool>>& done) const {
-    if (!visible_) return;
+  void draw(std::size_t finished, const std::vector<std::atomic<bool>>& done) {
+    const double elapsed = seconds_since(start_);
+    if (!on_terminal_ && elapsed < next_line_) return;
     double updates = 0.0, progressed = 0.0;
     for (std::size_t i = 0; i < jobs_.size(); ++i) {
       const auto steps = static_cast<double>(jobs_[i]->particle_steps.load());
@@ -177,20 +178,28 @@ class Progress {
       progressed += done[i] ? jobs_[i]->estimate : std::min(steps, jobs_[i]->estimate);
     }
     const double fraction = progressed / estimated_;
-    const double elapsed = seconds_since(start_);
-    constexpr int width = 30;
-    const int filled = static_cast<int>(fraction * width);
     const std::string left =
-        fraction > 0.02 ? fmt::format("{:.0f} s left", elapsed * (1.0 - fraction) / fraction) : "";
-    fmt::print(stderr, "\r\033[K[{:#<{}}{:.<{}}] {}/{} runs  {:.2g} particle-updates/s  {}", "", filled, "",
-               width - filled, finished, jobs_.size(), updates / std::max(elapsed, 1e-3), left);
+        fraction > 0.02 ? fmt::format("  {:.0f} s left", elapsed * (1.0 - fraction) / fraction) : "";
+    const std::string state = fmt::format("{}/{} runs  {:.2g} particle-updates/s{}", finished, jobs_.size(),
+                                          updates / std::max(elapsed, 1e-3), left);
+    if (on_terminal_) {
+      constexpr int width = 30;
+      const int filled = static_cast<int>(fraction * width);
+      fmt::print(stderr, "\r\033[K[{:#<{}}{:.<{}}] {}", "", filled, "", width - filled, state);
+    } else {
+      fmt::print(stderr, "{:3.0f} %  {}\n", 100 * fraction, state);
+      next_line_ = elapsed + seconds_between_lines;
+    }
     std::fflush(stderr);
   }
 
  private:
+  static constexpr double seconds_between_lines = 30.0;
+
   const std::vector<Job*>& jobs_;
-  bool visible_;
+  bool on_terminal_;
   double estimated_ = 0.0;
+  double next_line_ = seconds_between_lines;
   Clock::time_point start_ = Clock::now();
 };
 
@@ -206,7 +215,7 @@ class Pool {
   /// Returns when every job is done or a stop was asked for. Throws what storing a record threw.
   void run() {
     if (jobs_.empty()) return;
-    const Progress progress(jobs_);
+    Progress progress(jobs_);
     {
       working_ = threads_;
       std::vector<std::jthread> threads;
@@ -466,9 +475,7 @@ double estimated_particle_steps(const Scene& scene) {
     }
     particles += of_body;
   }
-  const auto* at_time = std::get_if<AtTime>(&scene.termination);
-  const double duration = at_time ? at_time->time : std::get<AtRest>(scene.termination).deadline;
-  const double estimate = particles * duration / time_step_of(scene);
+  const double estimate = particles * latest_end(scene) / time_step_of(scene);
   return std::isfinite(estimate) ? std::max(1.0, estimate) : 1.0;
 }
 

@@ -239,6 +239,8 @@ void read_description(const JsonPlace& place, Case& read) {
   read.figure_of_paper = optional_text(place["figure_of_paper"]);
   read.notes = read_texts(place["notes"]);
   read.quick = place["quick"].flag_or(true);
+  read.study = place["study"].flag_or(false);
+  if (read.study && read.quick) place["quick"].refuse("false for a study, which takes long");
   read.repeat_on_other_threads = place["repeat_on_other_threads"].flag_or(false);
   read.references = read_names(place["references"], reference_catalogue());
 }
@@ -286,7 +288,8 @@ void read_parts(Case& read) {
   const JsonPlace place(&read.text, "");
   std::vector<std::string> keys = {"$schema",         "id",          "title",
                                    "figure_of_paper", "description", "claims",
-                                   "notes",           "quick",       "repeat_on_other_threads",
+                                   "notes",           "quick",       "study",
+                                   "repeat_on_other_threads",
                                    "scene",           "element",     "sweep",
                                    "references",      "gates",       "figures"};
   if (!place["element"].present()) keys.insert(keys.end(), {"metamorphoses", "probes", "snapshots"});

@@ -145,6 +145,7 @@ struct Case {
   std::vector<Claim> claims;                ///< what the paper (or theory) says that this case puts to the test
   std::vector<std::string> notes;           ///< what a reader should know
   bool quick = true;                        ///< part of `report --quick`
+  bool study = false;                       ///< too long for the tests; the full report runs it
   bool repeat_on_other_threads = false;     ///< run everything a second time on another number of threads: `bits_differ`
   std::vector<std::string> metamorphoses;   ///< other descriptions to run every scene in: names in vv/metamorphic.hpp
   std::vector<std::string> references;      ///< reference solutions to judge against, of `reference_catalogue()`

@@ -165,6 +165,16 @@ Gravity changed(const Change& change, Gravity gravity) {
   return gravity;
 }
 
+AtDisplacement changed(const Change& change, AtDisplacement end) {
+  PerAxis displacement{};
+  displacement[static_cast<std::size_t>(end.axis)] = end.displacement;
+  displacement = change.vector(displacement, change.length);
+  end.axis = displacement[0] != 0.0 ? 0 : 1;
+  end.displacement = displacement[static_cast<std::size_t>(end.axis)];
+  end.deadline *= change.time;
+  return end;
+}
+
 Scene changed(const Change& change, Scene scene) {
   scene.cell_size *= change.length;
   change_box(change, scene.grid_lower, scene.grid_upper);
@@ -179,6 +189,7 @@ Scene changed(const Change& change, Scene scene) {
   if (auto* given = std::get_if<GivenTimeStep>(&scene.time_step)) given->seconds *= change.time;
   if (auto* end = std::get_if<AtTime>(&scene.termination)) end->time *= change.time;
   if (auto* rest = std::get_if<AtRest>(&scene.termination)) rest->deadline *= change.time;
+  if (auto* end = std::get_if<AtDisplacement>(&scene.termination)) *end = changed(change, *end);
   return scene;
 }
 
@@ -297,7 +308,7 @@ std::string why_not_shifted(const Scene& scene) {
     for (Condition condition : scene.edges[1])
       if (condition == Condition::fixed) return "an edge along x holds the material back";
   if (scene.damping > 0) return "local damping works against the motion as the grid sees it";
-  if (!std::holds_alternative<AtTime>(scene.termination)) return "what moves is never at rest";
+  if (!std::holds_alternative<AtTime>(scene.termination)) return "the common motion would change when the run ends";
   if (scene.precision != Precision::float64)
     return "single precision cannot tell the motion from the common one";
   for (const RigidBody& body : scene.rigid_bodies)
@@ -466,6 +477,8 @@ std::string why_not_describable(const std::string& metamorphosis, const Scene& s
   if (scene.dimension == 1 && (metamorphosis == "swap_axes" || metamorphosis == "rotate_90"))
     return "there is only one axis";
   if (metamorphosis == "split") {
+    if (std::holds_alternative<AtDisplacement>(scene.termination))
+      return "the body whose displacement ends the run would be in parts";
     const bool any = std::any_of(scene.bodies.begin(), scene.bodies.end(),
                                  [&](const Body& body) { return is_cut(scene, body); });
     return any || scene.bodies.size() > 1 ? "" : "there is nothing to cut or to reorder";

@@ -198,11 +198,6 @@ std::vector<std::string> displacement_probes(const std::vector<HistoryProbe>& pr
   return ids;
 }
 
-double latest_end(const Scene& scene) {
-  const auto* at_time = std::get_if<AtTime>(&scene.termination);
-  return at_time ? at_time->time : std::get<AtRest>(scene.termination).deadline;
-}
-
 double read_snapshot_time(const JsonPlace& place, const std::vector<RunRequest>& runs) {
   const double time = place.quantity(QuantityKind::time);
   if (time < 0.0) place.refuse("a time, zero or above");

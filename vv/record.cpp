@@ -25,7 +25,7 @@
 namespace mpm::vv {
 namespace {
 
-constexpr const char* record_schema = "mpmvv-record/1";
+constexpr const char* record_schema = "mpmvv-record/2";
 constexpr std::int64_t particle_steps_per_pulse = 1
                                                   << 16;  // a few milliseconds: prompt, yet too rare to cost
 
@@ -86,8 +86,8 @@ std::vector<double> numbers_from(const Json& json) {
 }
 
 Ending ending_from(const std::string& name) {
-  for (Ending ending : {Ending::reached_time, Ending::at_rest, Ending::not_at_rest, Ending::not_finite,
-                        Ending::inverted, Ending::outside_grid, Ending::domain_too_large}) {
+  for (Ending ending : {Ending::reached_time, Ending::at_rest, Ending::not_at_rest,
+                        Ending::reached_displacement, Ending::not_reached, Ending::not_finite, Ending::inverted, Ending::outside_grid, Ending::domain_too_large}) {
     if (name == name_of(ending)) return ending;
   }
   throw std::runtime_error("unknown ending: " + name);
@@ -439,7 +439,8 @@ class Recorder {
     record.digest = digest_of(end, record);
     record.cost = {.wall_seconds = std::chrono::duration<double>(wall_).count(),
                    .steps = simulation_.steps(),
-                   .particle_steps = simulation_.steps() * simulation_.particle_count()};
+                   .particle_steps = simulation_.steps() * simulation_.particle_count(),
+                   .memory_bytes = simulation_.memory()};
     return record;
   }
 
@@ -658,7 +659,8 @@ Json to_json(const Record& record) {
           {"cost",
            {{"wall_seconds", number(record.cost.wall_seconds)},
             {"steps", record.cost.steps},
-            {"particle_steps", record.cost.particle_steps}}},
+            {"particle_steps", record.cost.particle_steps},
+            {"memory_bytes", record.cost.memory_bytes}}},
           {"profile", profile_to_json(record.profile)},
           {"histories", histories_to_json(record.histories)},
           {"snapshots", snapshots_to_json(record.snapshots)},
@@ -689,7 +691,8 @@ Record record_from_json(const Json& json) {
   record.repeat_digest = json.at("repeat_digest").get<std::string>();
   record.cost = {.wall_seconds = number_from(cost.at("wall_seconds")),
                  .steps = cost.at("steps").get<std::int64_t>(),
-                 .particle_steps = cost.at("particle_steps").get<std::int64_t>()};
+                 .particle_steps = cost.at("particle_steps").get<std::int64_t>(),
+                 .memory_bytes = cost.at("memory_bytes").get<std::int64_t>()};
   record.profile = profile_from_json(json.at("profile"));
   record.histories = histories_from_json(json.at("histories"));
   record.snapshots = snapshots_from_json(json.at("snapshots"));

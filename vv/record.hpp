@@ -46,6 +46,7 @@ struct Cost {
   double wall_seconds = 0.0;
   std::int64_t steps = 0;
   std::int64_t particle_steps = 0;
+  std::int64_t memory_bytes = 0;  ///< of the solver's particles and nodes; 0 of an element test, which has neither
 };
 
 /// What a run did: everything judged later is computed from this, never from the simulation itself.

@@ -237,18 +237,29 @@ std::variant<GivenTimeStep, StableFraction> read_time_step(const JsonPlace& plac
   throw Refusal(place.pointer(), expected, "neither");
 }
 
-enum class TerminationType { at_time, at_rest };
+enum class TerminationType { at_time, at_rest, at_displacement };
 
-std::variant<AtTime, AtRest> read_termination(const JsonPlace& place) {
-  const TerminationType type = place["type"].choice<TerminationType>(
-      {{"at_time", TerminationType::at_time}, {"at_rest", TerminationType::at_rest}});
+Termination read_termination(const JsonPlace& place, int dimension) {
+  const TerminationType type =
+      place["type"].choice<TerminationType>({{"at_time", TerminationType::at_time},
+                                             {"at_rest", TerminationType::at_rest},
+                                             {"at_displacement", TerminationType::at_displacement}});
   if (type == TerminationType::at_time) {
     place.allow_only({"type", "time"});
     return AtTime{place["time"].quantity(QuantityKind::time)};
   }
-  place.allow_only({"type", "unbalanced_force_ratio", "kinetic_energy_ratio", "deadline"});
-  return AtRest{place["unbalanced_force_ratio"].number(), place["kinetic_energy_ratio"].number(),
-                place["deadline"].quantity(QuantityKind::time)};
+  const auto read_deadline = [&] { return place["deadline"].quantity(QuantityKind::time); };
+  if (type == TerminationType::at_rest) {
+    place.allow_only({"type", "unbalanced_force_ratio", "kinetic_energy_ratio", "deadline"});
+    return AtRest{place["unbalanced_force_ratio"].number(), place["kinetic_energy_ratio"].number(),
+                  read_deadline()};
+  }
+  place.allow_only({"type", "body", "component", "displacement", "deadline"});
+  int axis = dimension - 1;
+  if (const JsonPlace component = place["component"]; component.present())
+    axis = component.choice<int>({{"x", 0}, {"y", 1}});
+  return AtDisplacement{place["body"].text(), axis, place["displacement"].quantity(QuantityKind::length),
+                        read_deadline()};
 }
 
 Precision read_precision(const JsonPlace& place) {
@@ -291,7 +302,7 @@ Scene read_scene(const JsonPlace& place) {
   scene.sums_strain = place["sums_strain"].flag_or(false);
   scene.gravity = read_gravity(place["gravity"], axes_of(scene));
   scene.time_step = read_time_step(place["time_step"]);
-  scene.termination = read_termination(place["termination"]);
+  scene.termination = read_termination(place["termination"], scene.dimension);
   return scene;
 }
 

@@ -255,6 +255,22 @@ const std::vector<Impossible>& impossible_scenes() {
          s.gravity.loading = StagedLoading{2.0, {0.2, 0.5, 1.0}};
          s.termination = AtRest{1e-8, 1e-12, 4.0};
        }},
+      {"/termination/body", "the name of a body", "\"nobody\"",
+       [](Scene& s) {
+         s.termination = AtDisplacement{"nobody", 0, -0.01, 5.0};
+       }},
+      {"/termination/component", "an axis of the scene", "axis 1",
+       [](Scene& s) {
+         s.termination = AtDisplacement{s.bodies[0].name, 1, -0.01, 5.0};
+       }},
+      {"/termination/displacement", "other than zero", "0 m",
+       [](Scene& s) {
+         s.termination = AtDisplacement{s.bodies[0].name, 0, 0.0, 5.0};
+       }},
+      {"/termination/deadline", "above zero", "0 s",
+       [](Scene& s) {
+         s.termination = AtDisplacement{s.bodies[0].name, 0, -0.01, 0.0};
+       }},
       {"/termination/type", "at_time where gravity is zero", "at_rest",
        [](Scene& s) { s.gravity.level = 0.0; }},
       {"/termination/type", "at_time where gravity is zero", "at_rest",

@@ -112,6 +112,34 @@ TEST(Simulation, SaysWhenTheDeadlineComesBeforeRest) {
   EXPECT_NEAR(simulation.time(), 0.05, simulation.time_step());
 }
 
+TEST(Simulation, EndsWhenABodyHasMovedAsFarAsAskedFor) {
+  Scene scene = column_scene(Scheme::cpgimp);
+  const std::string name = scene.bodies[0].name;
+  scene.termination = AtDisplacement{name, 0, -1e-4, 5.0};
+  const Simulation simulation = run_to_end(scene);
+  EXPECT_EQ(simulation.outcome().ending, Ending::reached_displacement);
+  EXPECT_TRUE(simulation.outcome().completed());
+  const ParticleFields end = simulation.particles();
+  double moment = 0.0, mass = 0.0;
+  for (std::size_t p = 0; p < end.mass.size(); ++p) {
+    moment += end.mass[p] * end.displacement[p];
+    mass += end.mass[p];
+  }
+  EXPECT_LE(moment / mass, -1e-4);
+  // It is looked for every 64 steps; half the way takes longer than that.
+  scene.termination = AtDisplacement{name, 0, -5e-5, 5.0};
+  EXPECT_LT(run_to_end(scene).steps(), simulation.steps());
+}
+
+TEST(Simulation, SaysWhenTheDeadlineComesBeforeTheDisplacement) {
+  Scene scene = column_scene(Scheme::cpgimp);
+  scene.termination = AtDisplacement{scene.bodies[0].name, 0, 1e-3, 0.05};  // upwards, where it does not go
+  const Simulation simulation = run_to_end(scene);
+  EXPECT_EQ(simulation.outcome().ending, Ending::not_reached);
+  EXPECT_FALSE(simulation.outcome().completed());
+  EXPECT_NEAR(simulation.time(), 0.05, simulation.time_step());
+}
+
 TEST(Simulation, NodesThatTurnRoundComeToRestToo) {
   // With the sign of the old velocity the kinetic energy of this column stalls near 3e-10.
   Scene scene = column_scene(Scheme::cpgimp, 50);

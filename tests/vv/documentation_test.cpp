@@ -173,8 +173,8 @@ TEST(Documentation, NamesEveryMetricReferenceFieldAndMetamorphosis) {
     EXPECT_TRUE(names(section("Figure"), field.name)) << field.name;
   for (const Metamorphosis& metamorphosis : metamorphosis_catalogue())
     EXPECT_TRUE(names(section("Metamorphoses"), metamorphosis.name)) << metamorphosis.name;
-  for (const Ending ending : {Ending::reached_time, Ending::at_rest, Ending::not_at_rest, Ending::not_finite,
-                              Ending::inverted, Ending::outside_grid, Ending::domain_too_large})
+  for (const Ending ending : {Ending::reached_time, Ending::at_rest, Ending::not_at_rest,
+                              Ending::reached_displacement, Ending::not_reached, Ending::not_finite, Ending::inverted, Ending::outside_grid, Ending::domain_too_large})
     EXPECT_TRUE(names(page(), name_of(ending))) << name_of(ending);
 }
 

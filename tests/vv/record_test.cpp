@@ -75,7 +75,7 @@ Record full_record() {
   fields.volume = fields.initial_volume = fields.mass = {0.1, 0.2};
   fields.body = {0, 3};
   record.snapshots = {{"end", 0.1 + 0.2, fields}};
-  record.cost = {.wall_seconds = 1.5e-7, .steps = 12, .particle_steps = 600};
+  record.cost = {.wall_seconds = 1.5e-7, .steps = 12, .particle_steps = 600, .memory_bytes = 4096};
   return record;
 }
 
@@ -111,6 +111,7 @@ TEST(RecordText, BringsBackEveryBit) {
   EXPECT_EQ(bits_of(read.histories[0].value), bits_of(written.histories[0].value));
   EXPECT_EQ(read.cost.wall_seconds, 1.5e-7);
   EXPECT_EQ(read.cost.particle_steps, 600);
+  EXPECT_EQ(read.cost.memory_bytes, 4096);
 }
 
 TEST(RecordText, BringsBackAnyFiniteNumber) {
