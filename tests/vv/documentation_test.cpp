@@ -135,6 +135,16 @@ TEST(Documentation, PartsOfTheExampleAreThoseOfTheWhole) {
   EXPECT_GE(parts, 5);
 }
 
+TEST(Documentation, VariantsFitTheExample) {
+  Json whole = Json::parse(example());
+  whole.erase("figures");
+  whole["sweep"] = Json::array({Json::parse(marked_block("axis for two_layers"))});
+  const Case definition = parse_case(whole.dump(), "two_layers.json");
+  ASSERT_EQ(definition.runs.size(), 3u);
+  EXPECT_EQ(scope_of(definition.runs[1].parameters), "half the speed");
+  EXPECT_EQ(definition.runs[1].scene.rigid_bodies[0].velocity[1], -0.05);
+}
+
 TEST(Documentation, QuotesTheMessageOfABadValue) {
   std::string text = example();
   const std::string good = "\"cohesion\": \"10 kPa\"";

@@ -530,6 +530,7 @@ TEST(Scope, ReadsLikeASentence) {
             "50G, cpgimp, h 0.02 m");
   EXPECT_EQ(scope_of({{"/scene/damping", 0.8}, {"/scene/bodies/0/material", {{"law", "zhang_elastic"}}}}),
             "damping 0.8, zhang_elastic");
+  EXPECT_EQ(scope_of({{"setting", "half the rate, 50"}, {scheme, "mpm"}}), "half the rate, 50, mpm");
   EXPECT_EQ(scope_of({}), "the run");
 }
 
