@@ -81,6 +81,7 @@ struct Follower {
 struct Variant {
   std::string name;                               ///< for a person; unlike the axis's other variants'
   std::vector<std::pair<std::string, Json>> set;  ///< JSON pointer below /scene or /element, and what it becomes
+  std::vector<std::string> remove = {};           ///< JSON pointers to what the scene is without
 };
 
 /// What a sweep goes through: the values of a parameter, or variants of the scene.
@@ -95,8 +96,9 @@ struct SweepAxis {
 /// What a history probe looks at.
 enum class ProbeTarget {
   particle,    ///< the particle nearest to `at` (initial place): displacement, velocity, stress
-  rigid_body,  ///< the rigid body named `of`: displacement; reaction, the mean since the last sample
-  body,        ///< all particles of the body named `of`: displacement and velocity (mass weighted means), weight
+  // A name may belong to a rigid body in some runs of a sweep and to a body in others; the scene tells.
+  rigid_body,  ///< the rigid body named `of`: displacement; reaction and load, means since the last sample
+  body,        ///< all particles of the body named `of`: displacement and velocity (means by mass), weight, load
   everything,  ///< all particles: momentum, kinetic_energy, strain_energy
 };
 

@@ -63,9 +63,11 @@ constexpr ProbeKind probe_kinds[] = {
     {"stress", ProbeTarget::particle, ProbeKind::Components::stress},
     {"displacement", ProbeTarget::rigid_body, ProbeKind::Components::vector},
     {"reaction", ProbeTarget::rigid_body, ProbeKind::Components::vector},
+    {"load", ProbeTarget::rigid_body, ProbeKind::Components::none},
     {"displacement", ProbeTarget::body, ProbeKind::Components::vector},
     {"velocity", ProbeTarget::body, ProbeKind::Components::vector},
     {"weight", ProbeTarget::body, ProbeKind::Components::none},
+    {"load", ProbeTarget::body, ProbeKind::Components::none},
     {"momentum", ProbeTarget::everything, ProbeKind::Components::vector},
     {"kinetic_energy", ProbeTarget::everything, ProbeKind::Components::none},
     {"strain_energy", ProbeTarget::everything, ProbeKind::Components::none},
@@ -129,19 +131,27 @@ std::vector<std::string> component_names(const ProbeKind& kind, std::size_t axes
                                                           : keys_of(axes, {"x"}, {"y"});
 }
 
-void read_component(const JsonPlace& place, const RunRequest& run, HistoryProbe& probe) {
-  const ProbeKind& kind = *find_probe_kind(probe.quantity, probe.target);
-  if (kind.components == ProbeKind::Components::none) return;
-  const std::size_t axes = axes_of(run.scene);
-  const std::vector<std::string> names = component_names(kind, axes);
-  probe.component = place.present() ? place.one_of(names) : names[axes - 1];
-  if (probe.quantity != "reaction") return;
+/// In other components a rigid body has no reaction.
+void require_constrained(const JsonPlace& place, const RunRequest& run, const HistoryProbe& probe,
+                         const std::string& component) {
   const auto body = std::find_if(run.scene.rigid_bodies.begin(), run.scene.rigid_bodies.end(),
                                  [&](const RigidBody& b) { return b.name == probe.of; });
-  if (!body->constrains[probe.component == "x" ? 0 : 1]) {
+  if (!body->constrains[component == "x" ? 0 : 1]) {
     throw Refusal(place.pointer(), "a component that " + probe.of + " constrains",
-                  probe.component + ", in which it has no reaction" + in_run(run));
+                  component + ", in which it has no reaction" + in_run(run));
   }
+}
+
+void read_component(const JsonPlace& place, const RunRequest& run, HistoryProbe& probe) {
+  const ProbeKind& kind = *find_probe_kind(probe.quantity, probe.target);
+  const std::size_t axes = axes_of(run.scene);
+  if (kind.components != ProbeKind::Components::none) {
+    const std::vector<std::string> names = component_names(kind, axes);
+    probe.component = place.present() ? place.one_of(names) : names[axes - 1];
+  }
+  if (probe.quantity == "reaction") require_constrained(place, run, probe, probe.component);
+  if (probe.quantity == "load" && probe.target == ProbeTarget::rigid_body)
+    require_constrained(place, run, probe, axes == 1 ? "x" : "y");
 }
 
 bool stores_energy(const Body& body) {
@@ -179,7 +189,8 @@ HistoryProbe read_probe(const JsonPlace& place, const std::vector<RunRequest>& r
   for (const RunRequest& run : runs) {
     HistoryProbe again = probe;
     read_probed(place, run, again);
-    if (again.target != probe.target || again.component != probe.component) {
+    const bool named = probe.target == ProbeTarget::body || probe.target == ProbeTarget::rigid_body;
+    if ((again.target != probe.target && !named) || again.component != probe.component) {
       throw Refusal(place.pointer(), "a probe that means the same in every run",
                     "one that means something else" + in_run(run));
     }

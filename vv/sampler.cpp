@@ -172,13 +172,14 @@ class MeanReaction {
 Measure measure_of_rigid_body(const HistoryProbe& probe, std::size_t component, const Scene& scene) {
   const std::size_t body = index_of(scene.rigid_bodies, probe);
   if (probe.quantity == "reaction") return MeanReaction(body, component);
+  if (probe.quantity == "load") return MeanReaction(body, axes_of(scene) - 1);
   if (probe.quantity != "displacement") refuse(probe);
   return [=](const Observation& now) { return now.rigid_bodies()[body].displacement[component]; };
 }
 
 Measure measure_of_body(const HistoryProbe& probe, std::size_t component, const Scene& scene) {
   const std::size_t body = index_of(scene.bodies, probe);
-  if (probe.quantity == "weight") {
+  if (probe.quantity == "weight" || probe.quantity == "load") {
     return [body, &gravity = scene.gravity, axis = axes_of(scene) - 1](const Observation& now) {
       const double acceleration = gravity.acceleration[axis] * gravity.level * gravity.fraction(now.time());
       return mass_of_body(now.particles(), body) * std::abs(acceleration);
@@ -201,15 +202,20 @@ Measure measure_of_everything(const HistoryProbe& probe, std::size_t component, 
   return [&scene](const Observation& now) { return strain_energy(scene, now.particles()); };
 }
 
+bool is_rigid(const Scene& scene, const std::string& name) {
+  return std::any_of(scene.rigid_bodies.begin(), scene.rigid_bodies.end(),
+                     [&](const RigidBody& body) { return body.name == name; });
+}
+
 Measure measure_of(const HistoryProbe& probe, const Scene& scene, const Observation& start) {
   const std::size_t component = component_index(probe, scene);
   switch (probe.target) {
     case ProbeTarget::particle:
       return measure_of_particle(probe, component, start);
     case ProbeTarget::rigid_body:
-      return measure_of_rigid_body(probe, component, scene);
     case ProbeTarget::body:
-      return measure_of_body(probe, component, scene);
+      return is_rigid(scene, probe.of) ? measure_of_rigid_body(probe, component, scene)
+                                       : measure_of_body(probe, component, scene);
     case ProbeTarget::everything:
       return measure_of_everything(probe, component, scene);
   }

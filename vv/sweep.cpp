@@ -33,9 +33,32 @@ bool names_value(const std::string& parameter, const Subject& subject) {
   }
 }
 
+/// Whether a key of the scene that is left to its default is named, or something in such a place.
+bool names_absent_key(const std::string& parameter, const Subject& subject) {
+  if (!parameter.starts_with(subject.pointer + "/")) return false;
+  try {
+    const Json::json_pointer place = below(subject, parameter);
+    return !subject.text.contains(place) && subject.text.contains(place.parent_pointer()) &&
+           subject.text.at(place.parent_pointer()).is_object();
+  } catch (const Json::exception&) {  // not a JSON pointer
+    return false;
+  }
+}
+
 /// Whether one of two JSON pointers is the other or lies below it.
 bool overlap(const std::string& one, const std::string& other) {
   return at_or_below(one, other) || at_or_below(other, one);
+}
+
+/// Refuses a `parameter` that one of the `taken` changes too. `found` describes it.
+void require_untaken(const std::string& pointer, const std::string& parameter, const std::string& found,
+                     const std::vector<std::string>& taken) {
+  for (const std::string& other : taken) {
+    if (overlap(parameter, other)) {
+      throw Refusal(pointer, "a parameter that no other axis changes",
+                    found + ", which " + other + " changes too");
+    }
+  }
 }
 
 /// Refuses a `parameter` that the subject does not have or that one of the `taken` changes too. `found`
@@ -49,12 +72,7 @@ void require_own_value(const std::string& pointer, const std::string& parameter,
                       : "a JSON pointer to a value the scene has, such as \"/scene/scheme\"",
                   found);
   }
-  for (const std::string& other : taken) {
-    if (overlap(parameter, other)) {
-      throw Refusal(pointer, "a parameter that no other axis changes",
-                    found + ", which " + other + " changes too");
-    }
-  }
+  require_untaken(pointer, parameter, found, taken);
 }
 
 std::vector<Json> read_distinct_values(const JsonPlace& place) {
@@ -92,23 +110,49 @@ std::string read_variant_name(const JsonPlace& place, const std::vector<Variant>
   return name;
 }
 
+/// What a variant puts at a place: instead of a value there, or of a key's default.
+void read_setting(const std::string& parameter, const JsonPlace& value, const Subject& subject,
+                  const std::vector<std::string>& taken, Variant& variant) {
+  const std::string found = describe(Json(parameter));
+  if (names_absent_key(parameter, subject)) {
+    require_untaken(value.pointer(), parameter, found, taken);
+  } else {
+    require_own_value(value.pointer(), parameter, found, subject, taken);
+  }
+  for (const auto& [other, own] : variant.set) {
+    if (overlap(parameter, other)) {
+      throw Refusal(value.pointer(), "a parameter that the variant sets once", found + " beside " + other);
+    }
+  }
+  variant.set.emplace_back(parameter, value.value());
+}
+
+void read_removal(const JsonPlace& place, const Subject& subject, const std::vector<std::string>& taken,
+                  Variant& variant) {
+  const std::string parameter = place.text();
+  require_own_value(place.pointer(), parameter, describe(place.value()), subject, taken);
+  for (const auto& [other, own] : variant.set) {
+    if (overlap(parameter, other)) place.refuse("a value that the variant does not set", " beside " + other);
+  }
+  for (const std::string& other : variant.remove) {
+    if (overlap(parameter, other)) place.refuse("each value once", " beside " + other);
+  }
+  variant.remove.push_back(parameter);
+}
+
 /// Reads a variant; `taken` are the parameters that earlier axes change.
 Variant read_variant(const JsonPlace& place, const Subject& subject, const std::vector<std::string>& taken,
                      const std::vector<Variant>& earlier) {
-  place.allow_only({"name", "set"});
-  Variant variant{read_variant_name(place["name"], earlier), {}};
-  for (const auto& [parameter, value] : place["set"].members()) {
-    const std::string found = describe(Json(parameter));
-    require_own_value(value.pointer(), parameter, found, subject, taken);
-    for (const auto& [other, own] : variant.set) {
-      if (overlap(parameter, other)) {
-        throw Refusal(value.pointer(), "a parameter that the variant sets once", found + " beside " + other);
-      }
-    }
-    variant.set.emplace_back(parameter, value.value());
+  place.allow_only({"name", "set", "remove"});
+  Variant variant{.name = read_variant_name(place["name"], earlier), .set = {}, .remove = {}};
+  for (const auto& [parameter, value] : place["set"].members())
+    read_setting(parameter, value, subject, taken, variant);
+  if (const JsonPlace removals = place["remove"]; removals.present()) {
+    for (const JsonPlace& removal : removals.some_elements()) read_removal(removal, subject, taken, variant);
   }
   for (const Variant& other : earlier) {
-    if (std::is_permutation(variant.set.begin(), variant.set.end(), other.set.begin(), other.set.end()))
+    if (variant.remove == other.remove &&
+        std::is_permutation(variant.set.begin(), variant.set.end(), other.set.begin(), other.set.end()))
       place["set"].refuse("what no other variant of the axis sets", ", as \"" + other.name + "\" has it");
   }
   return variant;
@@ -130,6 +174,7 @@ SweepAxis read_variants(const JsonPlace& place, const Subject& subject, const st
   }
   for (const Variant& variant : axis.variants) {
     for (const auto& [parameter, value] : variant.set) taken.push_back(parameter);
+    taken.insert(taken.end(), variant.remove.begin(), variant.remove.end());
   }
   return axis;
 }
@@ -167,17 +212,46 @@ std::string chosen_pointer(const std::vector<SweepAxis>& sweep, const Choice& ch
          std::to_string(choice[axis]);
 }
 
-/// Puts the value with index `chosen` of an axis into the subject, and what follows along.
+/// Puts the value with index `chosen` of an axis into the subject, and what follows along. What a variant
+/// removes stays, so that the places of what comes after it do too.
 void put(const SweepAxis& axis, std::size_t chosen, Subject& subject) {
   if (!axis.variants.empty()) {
     for (const auto& [parameter, value] : axis.variants[chosen].set)
-      subject.text.at(below(subject, parameter)) = value;
+      subject.text[below(subject, parameter)] = value;
     return;
   }
   subject.text.at(below(subject, axis.parameter)) = axis.values[chosen];
   for (const Follower& follower : axis.with) {
     subject.text.at(below(subject, follower.parameter)) = follower.values[chosen];
   }
+}
+
+/// Takes out what the chosen variants remove, from behind.
+void remove(const std::vector<const Variant*>& variants, Subject& subject) {
+  std::vector<Json::json_pointer> places;
+  for (const Variant* variant : variants) {
+    for (const std::string& parameter : variant->remove) places.push_back(below(subject, parameter));
+  }
+  const auto index_of = [](const Json::json_pointer& place) {
+    const std::string& last = place.back();
+    const bool is_index = last.find_first_not_of("0123456789") == std::string::npos;
+    return is_index ? std::stoll(last) : -1;
+  };
+  std::stable_sort(places.begin(), places.end(), [&](const auto& a, const auto& b) { return index_of(a) > index_of(b); });
+  for (const Json::json_pointer& place : places) {
+    Json& parent = subject.text.at(place.parent_pointer());
+    if (parent.is_array()) {
+      parent.erase(static_cast<std::size_t>(index_of(place)));
+    } else {
+      parent.erase(place.back());
+    }
+  }
+}
+
+/// Puts one value of one axis into the subject, as if there were no other axis.
+void put_alone(const SweepAxis& axis, std::size_t chosen, Subject& subject) {
+  put(axis, chosen, subject);
+  if (!axis.variants.empty()) remove({&axis.variants[chosen]}, subject);
 }
 
 /// Where in the case file the value stands that a variant puts at or above `pointer`; `variant_pointer` is its
@@ -214,7 +288,7 @@ std::string source_of(const std::string& pointer, const std::vector<SweepAxis>& 
 std::size_t culprit(const Subject& subject, const std::vector<SweepAxis>& sweep, const Choice& choice) {
   for (std::size_t axis = 0; axis < sweep.size(); ++axis) {
     Subject changed = subject;
-    put(sweep[axis], choice[axis], changed);
+    put_alone(sweep[axis], choice[axis], changed);
     try {
       read_checked(changed);
     } catch (const Refusal&) {
@@ -241,10 +315,13 @@ std::size_t culprit(const Subject& subject, const std::vector<SweepAxis>& sweep,
 RunRequest read_run(const Subject& subject, const std::vector<SweepAxis>& sweep, const Choice& choice) {
   RunRequest run;
   Subject resolved = subject;
+  std::vector<const Variant*> variants;
   for (std::size_t axis = 0; axis < sweep.size(); ++axis) {
     run.parameters.emplace_back(sweep[axis].parameter, chosen_value(sweep, choice, axis));
     put(sweep[axis], choice[axis], resolved);
+    if (!sweep[axis].variants.empty()) variants.push_back(&sweep[axis].variants[choice[axis]]);
   }
+  remove(variants, resolved);
   try {
     CheckedSubject checked = read_checked(resolved);
     run.scene = std::move(checked.scene);
@@ -347,7 +424,7 @@ bool refines(const SweepAxis& axis, const std::vector<Json>& values, const Subje
   for (const Json& value : values) {
     Subject changed = scene;
     const auto chosen = std::find(axis.values.begin(), axis.values.end(), value) - axis.values.begin();
-    put(axis, static_cast<std::size_t>(chosen), changed);
+    put_alone(axis, static_cast<std::size_t>(chosen), changed);
     const double cell_size = read_cell_size(changed);
     if (!(cell_size < coarser)) return false;
     coarser = cell_size;

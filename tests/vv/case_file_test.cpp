@@ -250,6 +250,34 @@ TEST(CaseFile, sweeps_over_variants_that_have_names) {
   EXPECT_EQ(read.figures[1].over, "setting");
 }
 
+TEST(CaseFile, has_variants_without_something_or_with_more) {
+  Json text = valid_case();
+  text["scene"]["bodies"].push_back(text["scene"]["bodies"][1]);
+  text["scene"]["bodies"][1]["upper"] = {"0.75 m"};
+  text["scene"]["bodies"][2]["lower"] = {"0.75 m"};
+  text["scene"]["bodies"][2]["name"] = "top";
+  text["scene"].erase("update_order");
+  text["sweep"] = Json::parse(R"([
+      { "name": "top", "variants": [
+        { "name": "all", "set": {} },
+        { "name": "no middle", "set": { "/scene/update_order": "usl" }, "remove": ["/scene/bodies/1"] } ] },
+      { "parameter": "/scene/bodies/2/density", "values": ["2 t/m^3", "3 t/m^3"] } ])");
+  for (const char* key : {"gates", "figures"}) text[key] = Json::array();
+  text.erase("claims");
+  text["gates"].push_back(Json::parse(R"({ "id": "end", "metric": "completed", "at_least": 1,
+      "basis": "requirement", "reason": "a reason" })"));
+  const Case read = parsed(text);
+  ASSERT_EQ(read.runs.size(), 4u);
+  EXPECT_EQ(read.runs[1].scene.bodies.size(), 3u);
+  EXPECT_EQ(read.runs[1].scene.bodies[2].density, 3000.0);
+  EXPECT_EQ(read.runs[1].scene.update_order, UpdateOrder::musl);
+  // The place of what is removed, and of what another axis changes, are those of the scene as written.
+  ASSERT_EQ(read.runs[3].scene.bodies.size(), 2u);
+  EXPECT_EQ(read.runs[3].scene.bodies[1].name, "top");
+  EXPECT_EQ(read.runs[3].scene.bodies[1].density, 3000.0);
+  EXPECT_EQ(read.runs[3].scene.update_order, UpdateOrder::usl);
+}
+
 TEST(CaseFile, refines_by_what_a_variant_and_the_scene_as_written_say) {
   Json text = column_in_variants();
   // Without a cell size of its own the last variant has that of the scene as written, which is not smaller.
@@ -288,17 +316,30 @@ TEST(CaseFile, says_which_variant_is_wrong_and_where) {
       {R"([{"op": "replace", "path": "/sweep/0/variants/1/set", "value": {}}])", "/sweep/0/variants/1/set",
        "what no other variant of the axis sets", "as \"as written\" has it", false},
       {R"([{"op": "add", "path": "/sweep/0/variants/0/settings", "value": {}}])",
-       "/sweep/0/variants/0/settings", "one of the keys name, set", "\"settings\"", true},
+       "/sweep/0/variants/0/settings", "one of the keys name, set, remove", "\"settings\"", true},
       {R"([{"op": "add", "path": "/sweep/0/variants/0/set/~1scene~1dampin", "value": 0}])",
-       "/sweep/0/variants/0/set/~1scene~1dampin", "a JSON pointer to a value the scene has",
-       "\"/scene/dampin\"", false},
+       "/sweep/0/variants/0/set/~1scene~1dampin", "one of the keys", "\"dampin\" (did you mean \"damping\"?)",
+       false},
+      {R"([{"op": "add", "path": "/sweep/0/variants/0/set/~1scene~1nothing~1there", "value": 0}])",
+       "/sweep/0/variants/0/set/~1scene~1nothing~1there", "a JSON pointer to a value the scene has", "", false},
+      {R"([{"op": "add", "path": "/sweep/0/variants/0/remove", "value": ["/scene/dampin"]}])",
+       "/sweep/0/variants/0/remove/0", "a JSON pointer to a value the scene has", "\"/scene/dampin\"", false},
+      {R"([{"op": "add", "path": "/sweep/0/variants/1/remove", "value": ["/scene/grid"]}])",
+       "/sweep/0/variants/1/remove/0", "a value that the variant does not set", "beside /scene/grid/cell_size",
+       false},
+      {R"([{"op": "add", "path": "/sweep/0/variants/0/remove", "value": ["/scene/bodies", "/scene/bodies/1"]}])",
+       "/sweep/0/variants/0/remove/1", "each value once", "beside /scene/bodies", false},
+      {R"([{"op": "add", "path": "/sweep/0/variants/0/remove", "value": ["/scene/bodies"]}])",
+       "/sweep/0/variants/0", "a variant with which /scene/bodies is", "", false},
+      {R"([{"op": "add", "path": "/sweep/0/variants/0/remove", "value": ["/scene/scheme"]}])",
+       "/sweep/1/parameter", "a parameter that no other axis changes", "which /scene/scheme changes too", false},
       {R"([{"op": "add", "path": "/sweep/0/variants/0/set/~1title", "value": "a"}])",
        "/sweep/0/variants/0/set/~1title", "a JSON pointer to a value the scene has", "\"/title\"", true},
       {R"([{"op": "add", "path": "/sweep/0/variants/2/set/~1scene~1grid", "value": {}}])",
        "/sweep/0/variants/2/set/~1scene~1grid", "a parameter that the variant sets once",
        "\"/scene/grid\" beside /scene/grid/cell_size", false},
       {R"([{"op": "add", "path": "/sweep/0/variants/1/set/~1scene~1time_step~1seconds", "value": "1 s"}])",
-       "/sweep/0/variants/1/set/~1scene~1time_step~1seconds", "a JSON pointer to a value the scene has", "", false},
+       "/sweep/0/variants/1/set/~1scene~1time_step~1seconds", "a parameter that the variant sets once", "", false},
       {R"([{"op": "add", "path": "/sweep/0/variants/1/set/~1scene~1time_step~1stable_fraction", "value": 0.1}])",
        "/sweep/0/variants/1/set/~1scene~1time_step~1stable_fraction", "a parameter that the variant sets once",
        "beside /scene/time_step", false},

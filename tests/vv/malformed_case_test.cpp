@@ -78,7 +78,7 @@ const std::vector<Malformed>& malformed_cases() {
       {R"([{"op": "replace", "path": "/quick", "value": "yes"}])", "/quick", "true or false", "\"yes\"",
        Schema::refuses},
       {R"([{"op": "add", "path": "/study", "value": true}, {"op": "replace", "path": "/quick", "value": true}])",
-       "/quick", "false for a study", "true", Schema::accepts},
+       "/quick", "false for a study", "true", Schema::cannot_tell},
       {R"([{"op": "replace", "path": "/scene/dimension", "value": "1"}])", "/scene/dimension", "an integer",
        "\"1\"", Schema::refuses},
       {R"([{"op": "replace", "path": "/scene/dimension", "value": 3}])", "/scene/dimension", "1 or 2", "3",
