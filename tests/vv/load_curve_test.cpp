@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "tests/support/footing_scenes.hpp"
+#include "vv/norms.hpp"
 
 namespace mpm::vv {
 namespace {
@@ -231,6 +232,22 @@ TEST(LoadCurveOfABrokenRun, EndsBeforeTheFirstSampleThatIsNoNumber) {
   EXPECT_FALSE(run.curve(half_model(clay())));
   run.record.histories.clear();  // as of a run that threw
   EXPECT_FALSE(run.curve(half_model(clay())));
+}
+
+TEST(LoadCurveOfABrokenRun, IsDrawnWithItsReferencesButNotJudgedByThem) {
+  Sampled run({recorded("reaction", "strip", "y", {0, 1, 2}, {0, 4, 8})});
+  run.definition.references = {"limit_analysis"};
+  run.record.outcome.ending = Ending::domain_too_large;
+  RunRequest request;
+  request.scene = half_model(clay());
+  const Judgement judgement = judge(run.definition, request, run.record);
+  std::vector<std::string> sources;
+  for (const Curve& curve : judgement.curves) {
+    if (curve.name == "pressure") sources.push_back(curve.source);
+  }
+  EXPECT_EQ(sources, (std::vector<std::string>{"run", "limit_analysis"}));
+  for (const auto& [name, value] : judgement.metrics)
+    EXPECT_FALSE(name.starts_with("limit_analysis")) << name;
 }
 
 // ---- as a function of the settlement
