@@ -6,10 +6,13 @@
 #include <numeric>
 #include <optional>
 #include <tuple>
+#include <utility>
 
 #include "reference/bearing_capacity.hpp"
 #include "reference/elastic_strip.hpp"
+#include "vv/curve_shape.hpp"
 #include "vv/judging.hpp"
+#include "vv/load_curve.hpp"
 
 namespace mpm::vv {
 namespace {
@@ -17,194 +20,166 @@ namespace {
 /// Only the last part of the settlement is judged as the state reached: its share of the whole.
 constexpr double judged_share = 0.2;
 
-/// A rigid strip pressed down on the surface of one block of ground.
-struct Footing {
-  const RigidBody& strip;
-  const Body& ground;
-  bool half;         ///< only the half at x >= its axis, the grid's lower edge in x, is modelled
-  double width;      ///< in the model [m]
-  double surcharge;  ///< on the surface beside it [Pa]
-  double weight;     ///< unit weight of the ground [N/m^3]
+// ---- what each reference needs
 
-  double full_width() const { return half ? 2 * width : width; }
-  reference::Roughness roughness() const {
-    return strip.constrains[0] ? reference::Roughness::rough : reference::Roughness::smooth;
-  }
-};
+double degrees(double angle) { return angle * 180 / std::numbers::pi; }
 
-/// Whether only the half to the right of the axis is modelled.
-bool is_half(const Scene& scene) {
-  return scene.rigid_bodies.front().lower[0] <= scene.grid_lower[0] && scene.edges[0][0] == Condition::roller;
+/// The range in which the exact factor of weight is known.
+bool has_slip_line_field(double friction_angle) {
+  return degrees(friction_angle) >= 1.0 && degrees(friction_angle) <= 50.0;
 }
 
-/// Pressure of all loads on the surface of the ground at x [Pa].
-double load_at(const Scene& scene, double x) {
-  double pressure = 0.0;
-  for (const SurfaceLoad& load : scene.surface_loads) {
-    if (load.begin <= x && x <= load.end) pressure -= load.traction[1];
-  }
-  return pressure;
+bool has_strength(const MohrCoulomb& soil, const Footing& footing) {
+  return soil.friction_angle == 0.0 || soil.cohesion > 0.0 || footing.weight > 0.0 || footing.surcharge > 0.0;
 }
 
-/// The middles of the parts into which the ground's surface is cut by the ends of the strip and of all loads
-/// [m], from left to right; the last one is beside the strip.
-Values parts_of_surface(const Scene& scene) {
-  const RigidBody& strip = scene.rigid_bodies.front();
-  const Body& ground = scene.bodies.front();
-  Values cuts{ground.lower[0], ground.upper[0], strip.lower[0], strip.upper[0]};
-  for (const SurfaceLoad& load : scene.surface_loads) cuts.insert(cuts.end(), {load.begin, load.end});
-  for (double& x : cuts) x = std::clamp(x, ground.lower[0], ground.upper[0]);
-  std::sort(cuts.begin(), cuts.end());
-  Values middles;
-  for (std::size_t k = 1; k < cuts.size(); ++k) {
-    const bool rounding = cuts[k] - cuts[k - 1] < 1e-6 * scene.cell_size;
-    if (!rounding) middles.push_back((cuts[k - 1] + cuts[k]) / 2);
-  }
-  return middles;
-}
+const char* const lacks_law = "ground of Mohr-Coulomb's law";
+const char* const lacks_strength = "something that gives the ground strength: cohesion, surcharge or weight";
 
-/// Whether all the surface beside the strip bears one pressure and none the surface below it.
-bool is_surcharged_evenly(const Scene& scene) {
-  const RigidBody& strip = scene.rigid_bodies.front();
-  const Values parts = parts_of_surface(scene);
-  const double surcharge = load_at(scene, parts.back());
-  return surcharge >= 0.0 && std::all_of(parts.begin(), parts.end(), [&](double x) {
-           const bool below = strip.lower[0] < x && x < strip.upper[0];
-           return std::abs(load_at(scene, x) - (below ? 0.0 : surcharge)) <= 1e-9 * surcharge;
-         });
-}
-
-/// Acceleration of gravity downwards in the end [m/s^2].
-double final_gravity(const Gravity& gravity) {
-  return -gravity.acceleration[1] * gravity.level * gravity.fraction(gravity.settled_after());
-}
-
-Footing footing_of(const Scene& scene) {
-  const RigidBody& strip = scene.rigid_bodies.front();
-  const Body& ground = scene.bodies.front();
-  const bool half = is_half(scene);
-  const double begin = std::max(strip.lower[0], scene.grid_lower[0]);
-  return {strip,
-          ground,
-          half,
-          strip.upper[0] - begin,
-          load_at(scene, parts_of_surface(scene).back()),
-          ground.density * final_gravity(scene.gravity)};
-}
-
-/// What a strip needs for its load curve.
-std::string why_no_footing(const Scene& scene) {
-  if (scene.dimension != 2) return "two dimensions";
-  if (scene.bodies.size() != 1 || scene.bodies.front().ring) return "a single block of ground";
-  if (scene.rigid_bodies.size() != 1) return "a single rigid body";
-  const RigidBody& strip = scene.rigid_bodies.front();
-  if (strip.velocity[0] != 0.0 || !(strip.velocity[1] < 0.0) || strip.angular_velocity != 0.0)
-    return "a rigid body that moves downwards only";
-  if (!strip.constrains[1]) return "a rigid body that constrains its vertical motion";
-  const Body& ground = scene.bodies.front();
-  if (std::abs(strip.lower[1] - ground.upper[1]) > 1e-6 * scene.cell_size)
-    return "a rigid body that starts on the ground's surface";
-  if (ground.lower[1] != scene.grid_lower[1] || scene.edges[1][0] != Condition::fixed)
-    return "ground that stands on a fixed y_lower edge";
-  if (strip.upper[0] >= ground.upper[0]) return "ground that reaches beyond the strip";
-  if (is_half(scene) ? ground.lower[0] != scene.grid_lower[0] : ground.lower[0] >= strip.lower[0])
-    return "ground that reaches beyond the strip on its left too, or to a roller at its axis";
-  return "";
-}
-
-/// What both references need of all else that acts on the ground.
-std::string why_not_only_pressed(const Scene& scene) {
-  if (scene.driven_motion) return "ground that no motion is imposed on";
-  if (scene.bodies.front().density_ramp) return "ground that keeps its mass";
-  if ((scene.gravity.acceleration[0] != 0.0 && scene.gravity.level != 0.0) ||
-      final_gravity(scene.gravity) < 0.0)
-    return "gravity straight downwards, if any";
-  for (const SurfaceLoad& load : scene.surface_loads) {
-    if (load.axis != 1 || load.side != 1 || load.traction[0] != 0.0)
-      return "no surface load but a pressure on the surface";
-  }
-  if (!is_surcharged_evenly(scene))
-    return "one pressure on all the surface beside the strip and none below it, if any";
-  return "";
-}
-
-std::string why_no_limit_load(const Scene& scene) {
-  const Footing footing = footing_of(scene);
-  const auto* soil = std::get_if<MohrCoulomb>(&footing.ground.material);
-  if (!soil) return "ground of Mohr-Coulomb's law";
+std::string why_no_limit_load(const Footing& footing) {
+  const auto* soil = std::get_if<MohrCoulomb>(&footing.ground->material);
+  if (!soil) return lacks_law;
   if (footing.weight > 0.0 && (soil->cohesion > 0.0 || footing.surcharge > 0.0))
     return "either weight or strength without weight, since only one term at a time is exact";
-  if (soil->friction_angle > 0.0 && soil->cohesion == 0.0 && footing.weight == 0.0 &&
-      footing.surcharge == 0.0)
-    return "something that gives the ground strength: cohesion, surcharge or weight";
-  const double degrees = soil->friction_angle * 180 / std::numbers::pi;
-  if (footing.weight > 0.0 && (degrees < 1.0 || degrees > 50.0))
+  if (!has_strength(*soil, footing)) return lacks_strength;
+  if (footing.weight > 0.0 && !has_slip_line_field(soil->friction_angle))
     return "a friction angle from 1 to 50 degrees, where the factor of weight is known";
   return "";
 }
 
-std::string why_no_stiffness(const Scene& scene) {
-  const Footing footing = footing_of(scene);
-  const auto* elastic = std::get_if<LinearElastic>(&footing.ground.material);
+std::string why_no_embedded_limit(const Footing& footing) {
+  const auto* soil = std::get_if<MohrCoulomb>(&footing.ground->material);
+  if (!soil) return lacks_law;
+  if (!has_strength(*soil, footing)) return lacks_strength;
+  if (footing.weight > 0.0 && soil->friction_angle > 0.0 && !has_slip_line_field(soil->friction_angle))
+    return "a friction angle of zero or from 1 to 50 degrees, where the factor of weight is known";
+  return "";
+}
+
+std::string why_no_terzaghi(const Footing& footing) {
+  const auto* soil = std::get_if<MohrCoulomb>(&footing.ground->material);
+  if (!soil) return lacks_law;
+  if (footing.roughness() == reference::Roughness::smooth) return "a rough footing";
+  if (!has_strength(*soil, footing)) return lacks_strength;
+  if (footing.weight > 0.0 && soil->friction_angle > 0.0 &&
+      !reference::terzaghi_ngamma_chart(soil->friction_angle))
+    return "a friction angle of 0, 15, 20, 25 or 30 degrees, for which the chart's factor of weight is "
+           "quoted";
+  return "";
+}
+
+/// What the stiffness of an elastic layer needs of everything but the ground's law.
+std::string why_no_layer(const Scene& scene, const Footing& footing) {
+  if (scene.edges[1][0] != Condition::fixed) return "ground that stands on a fixed y_lower edge";
+  if (!footing.half) return "a half model, its axis a roller at the grid's lower edge";
+  if (scene.edges[0][1] != Condition::roller || footing.ground->upper[0] != scene.grid_upper[0])
+    return "ground that reaches to a roller on its far side";
+  return "";
+}
+
+/// Young's modulus and Poisson's ratio of small strains of the laws that respond as an elastic layer at
+/// first.
+std::optional<LinearElastic> elasticity_of(const Material& material) {
+  if (const auto* elastic = std::get_if<LinearElastic>(&material)) return *elastic;
+  const auto* soil = std::get_if<MohrCoulomb>(&material);
+  return soil ? std::optional(LinearElastic{soil->youngs_modulus, soil->poissons_ratio}) : std::nullopt;
+}
+
+std::string why_no_elastic_strip(const Scene& scene, const Footing& footing) {
+  const auto* elastic = std::get_if<LinearElastic>(&footing.ground->material);
   if (!elastic) return "linear elastic ground";
   if (elastic->poissons_ratio > 0.49) return "Poisson's ratio up to 0.49";
-  if (footing.ground.initial_stress) return "ground that starts free of stress";
-  if (!footing.half) return "a half model, its axis a roller at the grid's lower edge";
-  if (scene.edges[0][1] != Condition::roller || footing.ground.upper[0] != scene.grid_upper[0])
-    return "ground that reaches to a roller on its far side";
+  if (footing.ground->initial_stress) return "ground that starts free of stress";
   if (footing.weight != 0.0 || footing.surcharge != 0.0) return "ground without weight or surcharge";
-  return "";
+  return why_no_layer(scene, footing);
+}
+
+std::string why_no_elastic_layer(const Scene& scene, const Footing& footing) {
+  const std::optional<LinearElastic> elastic = elasticity_of(footing.ground->material);
+  if (!elastic) return "ground that is linear elastic or of Mohr-Coulomb's law";
+  if (elastic->poissons_ratio > 0.49) return "Poisson's ratio up to 0.49";
+  return why_no_layer(scene, footing);
 }
 
 std::string why_unsuited_to_footings(const std::string& reference, const Scene& scene) {
   std::string missing = why_no_footing(scene);
   if (missing.empty()) missing = why_not_only_pressed(scene);
   if (!missing.empty()) return missing;
-  return reference == "limit_analysis" ? why_no_limit_load(scene) : why_no_stiffness(scene);
+  const Footing footing = footing_of(scene);
+  if (reference == "limit_analysis") return why_no_limit_load(footing);
+  if (reference == "terzaghi") return why_no_terzaghi(footing);
+  if (reference == "embedded_limit") return why_no_embedded_limit(footing);
+  return reference == "elastic_strip" ? why_no_elastic_strip(scene, footing)
+                                      : why_no_elastic_layer(scene, footing);
 }
 
-/// The mean pressure at which rigid, perfectly plastic ground with associated flow fails [Pa].
-double limit_pressure(const Footing& footing) {
-  const auto& soil = std::get<MohrCoulomb>(footing.ground.material);
+std::string why_not_recorded(const std::string&, const Case& definition, const RunRequest& request) {
+  return why_no_load_curve(definition, request.scene);
+}
+
+// ---- the references
+
+/// Solves once for each key: a sweep over schemes asks for the same again and again. Each place that calls it
+/// has results of its own, since no two have the same type of `solve`.
+template <class Key, class Solve>
+auto solved_once(const Key& key, const Solve& solve) {
+  static std::mutex mutex;
+  static std::map<Key, decltype(solve())> solved;
+  const std::lock_guard lock(mutex);
+  const auto known = solved.find(key);
+  return known != solved.end() ? known->second : solved.emplace(key, solve()).first->second;
+}
+
+/// The exact factor of weight; none of it adds to the strength of soil without friction.
+double exact_ngamma_of(double friction_angle, reference::Roughness roughness) {
+  if (friction_angle == 0.0) return 0.0;
+  const std::pair key(friction_angle, roughness == reference::Roughness::rough);
+  return solved_once(key, [&] { return reference::exact_ngamma(friction_angle, roughness); });
+}
+
+reference::SecantStiffness stiffness_of(const reference::ElasticStrip& strip) {
+  const std::tuple key(strip.half_width, strip.layer_depth, strip.side_distance, strip.youngs_modulus,
+                       strip.poissons_ratio, strip.roughness == reference::Roughness::rough);
+  return solved_once(key, [&] { return reference::secant_stiffness(strip); });
+}
+
+/// The exact stiffness of the ground as long as it is elastic [Pa/m].
+double elastic_stiffness(const Footing& footing) {
+  const Body& ground = *footing.ground;
+  const LinearElastic elastic = *elasticity_of(ground.material);
+  return stiffness_of({footing.width, ground.upper[1] - ground.lower[1], ground.upper[0] - ground.lower[0],
+                       elastic.youngs_modulus, elastic.poissons_ratio, footing.roughness()})
+      .value;
+}
+
+/// The mean pressure [Pa] below a footing that has gone down by `embedment` [m], by exact factors of
+/// associated flow and superposition [DavisBooker71]. The soil above its base loads what lies below, and no
+/// more: neither its strength nor what has heaved beside the footing counts.
+double exact_pressure(const Footing& footing, double embedment) {
+  const auto& soil = std::get<MohrCoulomb>(footing.ground->material);
   const double phi = soil.friction_angle;
-  if (footing.weight > 0.0) {
-    return footing.weight * footing.full_width() / 2 * reference::exact_ngamma(phi, footing.roughness());
-  }
-  return soil.cohesion * reference::exact_nc(phi) + footing.surcharge * reference::exact_nq(phi);
+  const double ngamma = footing.weight > 0.0 ? exact_ngamma_of(phi, footing.roughness()) : 0.0;
+  return reference::superposed_capacity({.width = footing.full_width(),
+                                         .cohesion = soil.cohesion,
+                                         .surcharge = footing.surcharge + footing.weight * embedment,
+                                         .unit_weight = footing.weight},
+                                        {reference::exact_nc(phi), reference::exact_nq(phi), ngamma});
 }
 
-bool records_load(const HistoryProbe& probe, const RigidBody& strip) {
-  return probe.quantity == "reaction" && probe.of == strip.name && probe.component == "y";
+/// Terzaghi's for a footing on the surface [Pa]: his factors of cohesion and surcharge, his chart's of
+/// weight.
+double terzaghi_pressure(const Footing& footing) {
+  const auto& soil = std::get<MohrCoulomb>(footing.ground->material);
+  const double phi = soil.friction_angle;
+  const double ngamma = footing.weight > 0.0 && phi > 0.0 ? *reference::terzaghi_ngamma_chart(phi) : 0.0;
+  return reference::superposed_capacity({.width = footing.full_width(),
+                                         .cohesion = soil.cohesion,
+                                         .surcharge = footing.surcharge,
+                                         .unit_weight = footing.weight},
+                                        {reference::terzaghi_nc(phi), reference::terzaghi_nq(phi), ngamma});
 }
 
-std::string why_no_load_curve(const std::string&, const Case& definition, const RunRequest& request) {
-  const RigidBody& strip = request.scene.rigid_bodies.front();
-  const bool recorded = std::any_of(definition.probes.begin(), definition.probes.end(),
-                                    [&](const HistoryProbe& probe) { return records_load(probe, strip); });
-  return recorded ? "" : "a probe of the reaction of " + strip.name + ", component y";
-}
-
-/// Pressure below the strip over its settlement, from the probe that records its reaction.
-struct LoadCurve {
-  Values settlement;  ///< [m]
-  Values pressure;    ///< [Pa]
-};
-
-std::optional<LoadCurve> load_curve_of(const Judging& judging, const Footing& footing) {
-  for (std::size_t i = 0; i < judging.definition.probes.size(); ++i) {
-    if (!records_load(judging.definition.probes[i], footing.strip)) continue;
-    const History& history = judging.record.histories.at(i);
-    LoadCurve curve;
-    // A sample is the mean since the one before: it belongs to the settlement halfway.
-    for (std::size_t k = 1; k < history.time.size(); ++k) {
-      const double middle = (history.time[k - 1] + history.time[k]) / 2;
-      curve.settlement.push_back(-footing.strip.velocity[1] * footing.strip.travel_time(middle));
-      curve.pressure.push_back(history.value[k] / footing.width);
-    }
-    if (!curve.pressure.empty()) return curve;
-  }
-  return std::nullopt;
-}
+// ---- the load curve and those of the references
 
 /// The samples of the last part of the settlement.
 Values judged_part(const LoadCurve& curve, const Values& values) {
@@ -221,59 +196,117 @@ double mean_of(const Values& values) {
   return sum / static_cast<double>(values.size());
 }
 
+void draw_line(Judging& judging, const std::string& reference, const Values& settlement,
+               const Values& pressure) {
+  judging.result.curves.push_back({"pressure", reference, settlement, pressure, "settlement"});
+}
+
+double largest_of(const Values& values) {
+  return std::accumulate(values.begin(), values.end(), values.front(), larger);
+}
+
+/// From the pressure before the footing moves to the largest of the run, or to its deepest settlement.
+void draw_elastic_layer(Judging& judging, const Footing& footing, const LoadCurve& curve) {
+  const double stiffness = elastic_stiffness(footing);
+  const double first = footing.block ? curve.pressure.front() : 0.0;
+  const double end = std::min(largest_of(curve.settlement), (largest_of(curve.pressure) - first) / stiffness);
+  draw_line(judging, "elastic_layer", {0.0, end}, {first, first + stiffness * end});
+}
+
+void draw_references(Judging& judging, const Footing& footing, const LoadCurve& curve) {
+  const double deepest = largest_of(curve.settlement);
+  if (judging.asks_for("limit_analysis")) {
+    const double exact = exact_pressure(footing, 0.0);
+    draw_line(judging, "limit_analysis", {0.0, deepest}, {exact, exact});
+  }
+  if (judging.asks_for("elastic_strip"))
+    draw_line(judging, "elastic_strip", {0.0, deepest}, {0.0, elastic_stiffness(footing) * deepest});
+  if (judging.asks_for("terzaghi")) {
+    const double surface = terzaghi_pressure(footing);
+    draw_line(judging, "terzaghi", {0.0, deepest}, {surface, surface});
+  }
+  if (judging.asks_for("embedded_limit"))
+    draw_line(judging, "embedded_limit", {0.0, deepest},
+              {exact_pressure(footing, 0.0), exact_pressure(footing, deepest)});
+  if (judging.asks_for("elastic_layer")) draw_elastic_layer(judging, footing, curve);
+}
+
+// ---- metrics
+
 void judge_by_limit_load(Judging& judging, const Footing& footing, const LoadCurve& curve) {
-  const double exact = limit_pressure(footing);
+  const double exact = exact_pressure(footing, 0.0);
   const Values reached = judged_part(curve, curve.pressure);
   const auto [least, most] = std::minmax_element(reached.begin(), reached.end());
   const double mean = mean_of(reached);
   judging.set("limit_analysis.pressure", mean);
   judging.set("limit_analysis.overshoot", mean / exact - 1);
   judging.set("limit_analysis.shortfall", 1 - mean / exact);
-  judging.set(
-      "limit_analysis.peak_overshoot",
-      std::accumulate(curve.pressure.begin(), curve.pressure.end(), curve.pressure.front(), larger) / exact -
-          1);
+  judging.set("limit_analysis.peak_overshoot", largest_of(curve.pressure) / exact - 1);
   judging.set("limit_analysis.spread", (*most - *least) / mean);
-  judging.result.curves.push_back(
-      {"pressure", "limit_analysis", {0.0, curve.settlement.back()}, {exact, exact}, "settlement"});
-}
-
-/// Solved once for each geometry: a sweep over schemes asks for the same stiffness again and again.
-reference::SecantStiffness stiffness_of(const reference::ElasticStrip& strip) {
-  static std::mutex mutex;
-  static std::map<std::tuple<double, double, double, double, double, bool>, reference::SecantStiffness>
-      solved;
-  const auto key = std::tuple(strip.half_width, strip.layer_depth, strip.side_distance, strip.youngs_modulus,
-                              strip.poissons_ratio, strip.roughness == reference::Roughness::rough);
-  const std::lock_guard lock(mutex);
-  const auto known = solved.find(key);
-  if (known != solved.end()) return known->second;
-  return solved.emplace(key, reference::secant_stiffness(strip)).first->second;
 }
 
 void judge_by_stiffness(Judging& judging, const Footing& footing, const LoadCurve& curve) {
-  const auto& elastic = std::get<LinearElastic>(footing.ground.material);
-  const Body& ground = footing.ground;
-  const reference::SecantStiffness exact =
-      stiffness_of({footing.width, ground.upper[1] - ground.lower[1], ground.upper[0] - ground.lower[0],
-                    elastic.youngs_modulus, elastic.poissons_ratio, footing.roughness()});
+  const double exact = elastic_stiffness(footing);
   const double stiffness =
       mean_of(judged_part(curve, curve.pressure)) / mean_of(judged_part(curve, curve.settlement));
-  judging.set("elastic_strip.stiffness", std::abs(stiffness / exact.value - 1));
-  judging.set("elastic_strip.overshoot", stiffness / exact.value - 1);
-  const double deepest = curve.settlement.back();
-  judging.result.curves.push_back(
-      {"pressure", "elastic_strip", {0.0, deepest}, {0.0, exact.value * deepest}, "settlement"});
+  judging.set("elastic_strip.stiffness", std::abs(stiffness / exact - 1));
+  judging.set("elastic_strip.overshoot", stiffness / exact - 1);
+}
+
+void judge_knees(Judging& judging, const CurveShape& shape) {
+  const Polyline &one = shape.fit(1), &two = shape.fit(2), &three = shape.fit(3);
+  judging.set("load_curve.bend_settlement", two.x[1]);
+  judging.set("load_curve.bend_pressure", two.y[1]);
+  judging.set("load_curve.bend_ratio", two.slope(1) / two.slope(0));
+  judging.set("load_curve.straightness_gain_2", 1 - two.rms_residual / one.rms_residual);
+  judging.set("load_curve.first_bend_settlement", three.x[1]);
+  judging.set("load_curve.first_bend_pressure", three.y[1]);
+  judging.set("load_curve.second_bend_settlement", three.x[2]);
+  judging.set("load_curve.second_bend_pressure", three.y[2]);
+  judging.set("load_curve.straightness_gain_3", 1 - three.rms_residual / two.rms_residual);
+  judging.set("load_curve.phases", shape.phases());
+}
+
+/// Whatever the run tells on its way, be it completed or not.
+void judge_course(Judging& judging) {
+  if (!why_no_footing(judging.scene()).empty()) return;
+  const Footing footing = footing_of(judging.scene());
+  const std::optional<LoadCurve> curve = load_curve_of(judging.definition, judging.scene(), judging.record);
+  if (!curve) return;
+  draw_line(judging, "run", curve->settlement, curve->pressure);
+  draw_references(judging, footing, *curve);
+  judging.set("load_curve.deepest", largest_of(curve->settlement));
+  const std::optional<CurveShape> shape = shape_of(*curve);
+  if (!shape) return;
+  judge_knees(judging, *shape);
+  judging.set("load_curve.final_slope", shape->final_slope);
+  if (!shape->initial_stiffness) return;
+  judging.set("load_curve.initial_stiffness", *shape->initial_stiffness);
+  if (judging.asks_for("elastic_layer"))
+    judging.set("elastic_layer.stiffness_ratio", *shape->initial_stiffness / elastic_stiffness(footing));
+}
+
+/// What the run has reached in the end, over what a theory allows there.
+void judge_by_theories(Judging& judging, const Footing& footing, const LoadCurve& curve) {
+  const std::optional<CurveShape> shape = shape_of(curve);
+  if (!shape) return;
+  if (judging.asks_for("terzaghi"))
+    judging.set("terzaghi.exceeded_by", shape->final_pressure / terzaghi_pressure(footing) - 1);
+  if (judging.asks_for("embedded_limit")) {
+    const double exact = exact_pressure(footing, largest_of(curve.settlement));
+    judging.set("embedded_limit.exceeded_by", shape->final_pressure / exact - 1);
+  }
 }
 
 void judge(Judging& judging) {
   if (!why_no_footing(judging.scene()).empty()) return;
   const Footing footing = footing_of(judging.scene());
-  const std::optional<LoadCurve> curve = load_curve_of(judging, footing);
+  const std::optional<LoadCurve> curve = load_curve_of(judging.definition, judging.scene(), judging.record);
   if (!curve) return;
-  judging.result.curves.push_back({"pressure", "run", curve->settlement, curve->pressure, "settlement"});
   if (judging.asks_for("limit_analysis")) judge_by_limit_load(judging, footing, *curve);
   if (judging.asks_for("elastic_strip")) judge_by_stiffness(judging, footing, *curve);
+  if (judging.asks_for("terzaghi") || judging.asks_for("embedded_limit"))
+    judge_by_theories(judging, footing, *curve);
 }
 
 std::vector<Metric> catalogue() {
@@ -289,14 +322,39 @@ std::vector<Metric> catalogue() {
       {"elastic_strip.stiffness", "-", "elastic_strip",
        "relative error of pressure over settlement, both means " + last},
       {"elastic_strip.overshoot", "-", "elastic_strip", "the same with its sign: positive is too stiff"},
+      {"load_curve.bend_settlement", "m", "", "knee of the best two straight pieces"},
+      {"load_curve.bend_pressure", "Pa", "", "the two pieces' pressure there"},
+      {"load_curve.bend_ratio", "-", "", "slope after that knee over slope before"},
+      {"load_curve.straightness_gain_2", "-", "", "1 - what two pieces leave over what one leaves"},
+      {"load_curve.first_bend_settlement", "m", "", "first knee of the best three straight pieces"},
+      {"load_curve.first_bend_pressure", "Pa", "", "the three pieces' pressure there"},
+      {"load_curve.second_bend_settlement", "m", "", "second knee of the best three straight pieces"},
+      {"load_curve.second_bend_pressure", "Pa", "", "the three pieces' pressure there"},
+      {"load_curve.straightness_gain_3", "-", "", "1 - what three pieces leave over what two leave"},
+      {"load_curve.phases", "-", "",
+       "straight pieces needed to stay within 2 % of the largest pressure; 5 if four do not"},
+      {"load_curve.initial_stiffness", "Pa/m", "",
+       "slope at first of a parabola through the first third of the pressure gained up to the bend"},
+      {"load_curve.final_slope", "Pa/m", "", "slope of the straight line " + last},
+      {"load_curve.deepest", "m", "", "largest settlement reached"},
+      {"elastic_layer.stiffness_ratio", "-", "elastic_layer",
+       "initial stiffness over the exact one of the elastic layer"},
+      {"terzaghi.exceeded_by", "-", "terzaghi",
+       "pressure at the deepest settlement over Terzaghi's for the surface, minus 1"},
+      {"embedded_limit.exceeded_by", "-", "embedded_limit",
+       "pressure at the deepest settlement over the limit with that embedment, minus 1"},
   };
 }
 
 }  // namespace
 
 NormFamily footing_norms() {
-  return {
-      {"limit_analysis", "elastic_strip"}, catalogue(), why_unsuited_to_footings, judge, why_no_load_curve};
+  return {{"limit_analysis", "elastic_strip", "terzaghi", "embedded_limit", "elastic_layer"},
+          catalogue(),
+          why_unsuited_to_footings,
+          judge,
+          why_not_recorded,
+          judge_course};
 }
 
 }  // namespace mpm::vv

@@ -56,6 +56,9 @@ struct NormFamily {
   /// no snapshot.
   std::string (*why_not_judged)(const std::string& reference, const Case& definition,
                                 const RunRequest& request) = nullptr;
+  /// Judges what any run of a scene has left on its way, whether it completed or not, before `judge`; null if
+  /// the family needs a completed run for all it says.
+  void (*judge_course)(Judging& judging) = nullptr;
 };
 
 NormFamily column_norms();        ///< columns settled under their own weight

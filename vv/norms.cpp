@@ -181,6 +181,9 @@ Judgement judge(const Case& definition, const RunRequest& request, const Record&
   judging.set("non_finite_values", count_non_finite(record));
   if (!request.element) judge_scene(judging);
   for (const auto& [name, value] : record.measured) judging.set(name, value);
+  for (const NormFamily& family : families()) {
+    if (family.judge_course && !request.element) family.judge_course(judging);
+  }
   if (!record.completed()) return judging.result;
   for (const NormFamily& family : families()) family.judge(judging);
   return judging.result;

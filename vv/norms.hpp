@@ -19,8 +19,9 @@ struct Metric {
 /// Every metric there is, in the order a report lists them.
 const std::vector<Metric>& metric_catalogue();
 
-/// Reference solutions a case may ask for: of columns equilibrium, hencky and zhang; of footings limit_analysis
-/// and elastic_strip; of motions manufactured, free_fall and rotation; of element tests closed_form.
+/// Reference solutions a case may ask for: of columns equilibrium, hencky and zhang; of footings
+/// limit_analysis, elastic_strip, terzaghi, embedded_limit and elastic_layer; of motions manufactured, free_fall
+/// and rotation; of element tests closed_form.
 const std::vector<std::string>& reference_catalogue();
 
 /// What a reference solution needs that a scene does not have, for a person; empty if it describes the scene.
@@ -40,7 +41,8 @@ struct Judgement {
 };
 
 /// Judges a record by the references of its case. A run that did not complete has only the metrics that
-/// need no final state (cell_crossings, steps, particle_steps, completed).
+/// need no final state (cell_crossings, steps, particle_steps, completed) and what footings leave on their way: load
+/// curves with all that is read from them alone.
 Judgement judge(const Case& definition, const RunRequest& request, const Record& record);
 
 }  // namespace mpm::vv
