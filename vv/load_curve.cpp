@@ -124,14 +124,19 @@ bool is_surcharged_evenly(const Scene& scene, const Footing& footing) {
 
 // ---- its load curve
 
+/// Whether a probe records a quantity along the vertical; a load is the weight of a body, the reaction of a
+/// rigid one.
+bool records(const HistoryProbe& probe, const std::string& quantity) {
+  if (probe.quantity == "load") return quantity == "weight" || quantity == "reaction";
+  return probe.quantity == quantity && (quantity == "weight" || probe.component == "y");
+}
+
 /// The history of a case's first probe of a quantity of a body, vertical if it has a direction.
 template <class Each>
 const Each* recorded(const std::vector<HistoryProbe>& probes, const std::vector<Each>& of_probes,
                      const std::string& quantity, const std::string& name) {
   for (std::size_t i = 0; i < probes.size() && i < of_probes.size(); ++i) {
-    const HistoryProbe& probe = probes[i];
-    const bool vertical = quantity == "weight" || probe.component == "y";
-    if (probe.quantity == quantity && probe.of == name && vertical) return &of_probes[i];
+    if (probes[i].of == name && records(probes[i], quantity)) return &of_probes[i];
   }
   return nullptr;
 }
@@ -249,11 +254,12 @@ std::string why_no_load_curve(const Case& definition, const Scene& scene) {
   const Footing footing = footing_of(scene);
   if (footing.strip) {
     const std::string& name = footing.strip->name;
-    return records(definition, "reaction", name) ? ""
-                                                 : "a probe of the reaction of " + name + ", component y";
+    return records(definition, "reaction", name)
+               ? ""
+               : "a probe of the load or the reaction of " + name + ", component y";
   }
   const std::string& name = footing.block->name;
-  if (!records(definition, "weight", name)) return "a probe of the weight of " + name;
+  if (!records(definition, "weight", name)) return "a probe of the load or the weight of " + name;
   return records(definition, "displacement", name)
              ? ""
              : "a probe of the displacement of " + name + ", component y";

@@ -410,7 +410,7 @@ TEST(CaseFile, needs_the_load_on_the_strip_for_what_judges_footings) {
     const std::string name = text["references"][0].dump();
     const auto expect_refused = [&](const char* patch) {
       expect_message(refusal_of(text.patch(Json::parse(patch)).dump()), "column.json", "/references/0",
-                     "the case records enough; it needs a probe of the reaction of strip, component y", name);
+                     "the case records enough; it needs a probe of the load or the reaction of strip, component y", name);
     };
     expect_refused(R"([{"op": "remove", "path": "/probes"}])");
     expect_refused(R"([{"op": "add", "path": "/probes/0/component", "value": "x"}])");

@@ -210,7 +210,7 @@ TEST(BlockFooting, NeedsBothProbes) {
   const Recorded sideways = recorded("displacement", "block", "x", time, value);
   const Recorded of_ground = recorded("displacement", "ground", "y", time, value);
   const Sampled no_weight({descent}), no_descent({weight, sideways, of_ground});
-  EXPECT_EQ(why_no_load_curve(no_weight.definition, scene), "a probe of the weight of block");
+  EXPECT_EQ(why_no_load_curve(no_weight.definition, scene), "a probe of the load or the weight of block");
   EXPECT_EQ(why_no_load_curve(no_descent.definition, scene),
             "a probe of the displacement of block, component y");
   EXPECT_FALSE(no_weight.curve(scene));
@@ -218,6 +218,16 @@ TEST(BlockFooting, NeedsBothProbes) {
   const Sampled both({sideways, of_ground, weight, descent});
   EXPECT_EQ(why_no_load_curve(both.definition, scene), "");
   EXPECT_TRUE(both.curve(scene));
+}
+
+TEST(LoadCurve, IsThatOfTheLoadWhateverPresses) {
+  const std::vector<double> time{1, 2, 3, 4}, load{40, 40, 80, 120}, descent{0, 0, -1, -2};
+  const Sampled by_weight({recorded("displacement", "block", "y", time, descent), recorded("weight", "block", "", time, load)});
+  const Sampled by_load({recorded("displacement", "block", "y", time, descent), recorded("load", "block", "", time, load)});
+  expect_near(by_load.curve(block_model(clay()))->pressure, by_weight.curve(block_model(clay()))->pressure);
+  const Sampled reaction({recorded("reaction", "strip", "y", time, load)});
+  const Sampled rigid_load({recorded("load", "strip", "", time, load)});
+  expect_near(rigid_load.curve(half_model(clay()))->pressure, reaction.curve(half_model(clay()))->pressure);
 }
 
 // ---- runs that break off

@@ -448,6 +448,20 @@ TEST(ProbesOfRigidBodies, SeeTheirDisplacementAndMeanReaction) {
   EXPECT_LT(reaction.value[1], -1e4) << "the particles press it down";
 }
 
+TEST(ProbesOfLoad, SeeAWeightOrAReactionWhicheverTheNameHas) {
+  Case definition;
+  // In another run of the sweep the names belong to the other kind.
+  definition.probes = {probe_of("w", "weight", ProbeTarget::body, "block"),
+                       probe_of("f", "reaction", ProbeTarget::rigid_body, "plate", "y"),
+                       probe_of("of_block", "load", ProbeTarget::rigid_body, "block"),
+                       probe_of("of_plate", "load", ProbeTarget::body, "plate"),
+                       probe_of("u", "displacement", ProbeTarget::body, "plate", "y")};
+  const Record record = simulate(definition, lifted_block());
+  EXPECT_EQ(record.histories[2].value, record.histories[0].value);
+  EXPECT_EQ(record.histories[3].value, record.histories[1].value);
+  EXPECT_NEAR(record.histories[4].value.back(), 0.01, 1e-12);
+}
+
 TEST(ProbesOfRigidBodies, AreNotServedWithoutThem) {
   Case definition;
   definition.probes = {probe_of("u", "displacement", ProbeTarget::rigid_body, "plug")};
