@@ -41,6 +41,9 @@ struct Snapshot {
   ParticleFields fields;
 };
 
+/// What records call the moment of a requested snapshot.
+std::string moment_of(const SnapshotRequest& request);
+
 /// What a run cost: a noisy measure and a noise-free one.
 struct Cost {
   double wall_seconds = 0.0;
