@@ -45,7 +45,7 @@ struct Selector {
 
 struct Gate {
   std::string id;
-  std::string metric;  ///< a name in `metric_catalogue()` of vv/norms.hpp
+  std::string metric;  ///< a name in `metric_catalogue()` of vv/norms.hpp, or a reading
   Statistic statistic = Statistic::value;
   std::string across;  ///< swept parameter that makes the series, for the series statistics; else empty
   std::vector<Selector> where;
@@ -124,6 +124,16 @@ struct SnapshotRequest {
   friend bool operator==(const SnapshotRequest&, const SnapshotRequest&) = default;
 };
 
+/// A number read off a curve of each run: the metric `reading.<id>`.
+struct Reading {
+  std::string id;
+  std::string title;    ///< one line for a person, for example "pressure at 25 mm"
+  std::string curve;    ///< name of a curve of the runs
+  double at = 0.0;      ///< abscissa: a settlement [m], of an element test a strain [-]
+  double within = 0.0;  ///< half-width of the mean taken there; 0 interpolates between the samples
+  std::string over;  ///< a reference solution by whose curve, read alike, the number is divided; may be empty
+};
+
 /// A picture the report draws from the verdict of the case.
 struct FigureRequest {
   std::string id;
@@ -164,6 +174,7 @@ struct Case {
   std::vector<RunRequest> runs;
   std::vector<HistoryProbe> probes;
   std::vector<SnapshotRequest> snapshots;
+  std::vector<Reading> readings;
   std::vector<Gate> gates;
   std::vector<FigureRequest> figures;
   std::filesystem::path file;

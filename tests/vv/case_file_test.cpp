@@ -404,6 +404,75 @@ Json elastic_strip_case() {
   return text;
 }
 
+/// The strip with a reading at each of two depths, and a gate and a figure on them.
+Json strip_with_readings() {
+  Json text = strip_case();
+  text["readings"] = Json::parse(R"([
+    { "id": "early", "title": "pressure at 0.5 mm", "curve": "pressure", "at": "0.5 mm" },
+    { "id": "late", "title": "pressure at 1.5 mm", "curve": "pressure", "at": "1.5 mm", "within": "0.1 mm",
+      "over": "limit_analysis" }])");
+  text["gates"].push_back(Json::parse(R"({ "id": "late", "metric": "reading.late", "at_most": 1.1,
+    "basis": "theory", "reason": "Collapse." })"));
+  text["figures"] = Json::parse(R"([{ "id": "readings", "kind": "bars", "caption": "Pressures.",
+    "metrics": ["reading.early", "reading.late"] }])");
+  return text;
+}
+
+TEST(CaseFile, reads_readings) {
+  const Case read = parsed(strip_with_readings());
+  ASSERT_EQ(read.readings.size(), 2u);
+  EXPECT_EQ(read.readings[0].id, "early");
+  EXPECT_EQ(read.readings[0].title, "pressure at 0.5 mm");
+  EXPECT_EQ(read.readings[0].curve, "pressure");
+  EXPECT_EQ(read.readings[0].at, 0.0005);
+  EXPECT_EQ(read.readings[0].within, 0.0);
+  EXPECT_EQ(read.readings[0].over, "");
+  EXPECT_EQ(read.readings[1].within, 0.0001);
+  EXPECT_EQ(read.readings[1].over, "limit_analysis");
+  EXPECT_EQ(read.gates.back().metric, "reading.late");
+  EXPECT_EQ(read.figures[0].metrics, (std::vector<std::string>{"reading.early", "reading.late"}));
+  EXPECT_TRUE(parsed(strip_case()).readings.empty());
+}
+
+TEST(CaseFile, says_which_reading_is_wrong_and_where) {
+  struct Wrong {
+    const char *patch, *pointer, *expected, *found;
+    bool schema_refuses;
+  };
+  const std::vector<Wrong> all = {
+      {R"([{"op": "remove", "path": "/readings/0/title"}])", "/readings/0/title", "a text", "nothing", true},
+      {R"([{"op": "replace", "path": "/readings/1/id", "value": "early"}])", "/readings/1/id",
+       "an id of its own", "\"early\"", false},
+      {R"([{"op": "replace", "path": "/readings/0/curve", "value": "presure"}])", "/readings/0/curve",
+       "pressure", "(did you mean \"pressure\"?)", true},
+      {R"([{"op": "replace", "path": "/readings/0/curve", "value": "stress_xx"}])", "/readings/0/curve",
+       "pressure", "\"stress_xx\"", false},
+      {R"([{"op": "replace", "path": "/readings/0/at", "value": "1 s"}])", "/readings/0/at",
+       "a length such as", "\"1 s\", a time", true},
+      {R"([{"op": "replace", "path": "/readings/0/at", "value": 0.025}])", "/readings/0/at",
+       "a length such as", "0.025, a number without a unit", false},
+      {R"([{"op": "remove", "path": "/readings/0/at"}])", "/readings/0/at", "a length such as", "nothing",
+       true},
+      {R"([{"op": "replace", "path": "/readings/1/within", "value": "0 mm"}])", "/readings/1/within",
+       "a half-width above zero", "\"0 mm\"", true},
+      {R"([{"op": "replace", "path": "/readings/1/over", "value": "elastic_strip"}])", "/readings/1/over",
+       "limit_analysis", "\"elastic_strip\"", false},
+      {R"([{"op": "replace", "path": "/references", "value": []}])", "/readings/1/over",
+       "a reference solution of the case, which has none", "\"limit_analysis\"", false},
+      {R"([{"op": "add", "path": "/readings/0/around", "value": "1 mm"}])", "/readings/0/around",
+       "one of the keys id, title, curve, at, within, over", "\"around\"", true},
+      {R"([{"op": "replace", "path": "/gates/1/metric", "value": "reading.lat"}])", "/gates/1/metric",
+       "reading.early, reading.late", "(did you mean \"reading.late\"?)", false},
+      {R"([{"op": "remove", "path": "/readings"}])", "/gates/1/metric", "one of ", "\"reading.late\"", false},
+  };
+  for (const Wrong& wrong : all) {
+    SCOPED_TRACE(wrong.patch);
+    const Json text = strip_with_readings().patch(Json::parse(wrong.patch));
+    expect_message(refusal_of(text.dump()), "column.json", wrong.pointer, wrong.expected, wrong.found);
+    EXPECT_EQ(schema_violation(text).has_value(), wrong.schema_refuses);
+  }
+}
+
 TEST(CaseFile, needs_the_load_on_the_strip_for_what_judges_footings) {
   for (const Json& text : {strip_case(), elastic_strip_case()}) {
     EXPECT_EQ(refusal_of(text.dump()), "");
