@@ -435,6 +435,7 @@ std::string chip_of(const vv::Claim& claim, const std::vector<PlacedGate>& evide
     return std::any_of(evidence.begin(), evidence.end(),
                        [&](const PlacedGate& gate) { return gate.result->id == id; });
   });
+  if (claim.finding == vv::Finding::untested) return chip("open", "NOT TESTED");
   if (evidence.empty() || !complete) return chip("open", "NOT MEASURED");
   if (!std::all_of(evidence.begin(), evidence.end(), is_good)) return chip("fail", "IN DOUBT");
   switch (claim.finding) {
@@ -442,6 +443,8 @@ std::string chip_of(const vv::Claim& claim, const std::vector<PlacedGate>& evide
       return chip("pass", "SEEN");
     case vv::Finding::not_seen:
       return chip("contrary", "NOT SEEN");
+    case vv::Finding::untested:
+      break;
     case vv::Finding::depends:
       return chip("contrary", "DEPENDS");
   }

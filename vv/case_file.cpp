@@ -260,10 +260,16 @@ Claim read_claim(const JsonPlace& place, const Case& read) {
   place.allow_only({"claim", "finding", "gates", "remark"});
   Claim claim;
   claim.text = place["claim"].text();
-  claim.finding = place["finding"].choice<Finding>(
-      {{"seen", Finding::seen}, {"not_seen", Finding::not_seen}, {"depends", Finding::depends}});
-  const std::vector<std::string> known = ids_of(read.gates);
-  for (const JsonPlace& gate : place["gates"].some_elements()) claim.gates.push_back(gate.one_of(known));
+  claim.finding = place["finding"].choice<Finding>({{"seen", Finding::seen},
+                                                    {"not_seen", Finding::not_seen},
+                                                    {"depends", Finding::depends},
+                                                    {"untested", Finding::untested}});
+  if (claim.finding == Finding::untested) {
+    if (place["gates"].present()) place["gates"].refuse("no gates below a claim that is untested");
+  } else {
+    const std::vector<std::string> known = ids_of(read.gates);
+    for (const JsonPlace& gate : place["gates"].some_elements()) claim.gates.push_back(gate.one_of(known));
+  }
   claim.remark = optional_text(place["remark"]);
   if (claim.finding != Finding::seen && claim.remark.empty()) {
     place["remark"].refuse("a remark that says why the claim is not simply seen");
@@ -325,13 +331,11 @@ std::vector<std::string> read_metamorphoses(const JsonPlace& place, const Case& 
 /// Reads `read.text` into the rest of `read`, top to bottom: each part refers only to those before it.
 void read_parts(Case& read) {
   const JsonPlace place(&read.text, "");
-  std::vector<std::string> keys = {"$schema",         "id",          "title",
-                                   "figure_of_paper", "description", "claims",
-                                   "notes",           "quick",       "study",
-                                   "repeat_on_other_threads",
-                                   "scene",           "element",     "sweep",
-                                   "references",      "readings",    "gates",
-                                   "figures"};
+  std::vector<std::string> keys = {
+      "$schema", "id",      "title", "figure_of_paper", "description",
+      "claims",  "notes",   "quick", "study",           "repeat_on_other_threads",
+      "scene",   "element", "sweep", "references",      "readings",
+      "gates",   "figures"};
   if (!place["element"].present()) keys.insert(keys.end(), {"metamorphoses", "probes", "snapshots"});
   place.allow_only(keys);
   optional_text(place["$schema"]);

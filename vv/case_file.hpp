@@ -61,13 +61,14 @@ enum class Finding {
   seen,      ///< the runs show what is claimed
   not_seen,  ///< the runs show that it is not so here
   depends,   ///< on circumstances the remark names
+  untested,  ///< for want of what the remark names; rests on no gate
 };
 
 /// A statement of the paper or of theory that the case puts to the test.
 struct Claim {
   std::string text;  ///< who says what, and where
   Finding finding = Finding::seen;
-  std::vector<std::string> gates;  ///< ids of the gates that establish the finding, at least one
+  std::vector<std::string> gates;  ///< ids of the gates that establish the finding, at least one; none if untested
   std::string remark;              ///< for a person; required unless the claim is seen
 };
 
