@@ -8,7 +8,7 @@ namespace mpm::vv {
 namespace {
 
 constexpr int points = 200;
-constexpr std::size_t fewest_samples = 10, fewest_initial_samples = 4;
+constexpr std::size_t fewest_samples = 10, fewest_initial_samples = 8;
 constexpr double straight_within = 0.02;   ///< of the largest pressure
 constexpr double final_share = 0.2;        ///< of the settlement
 constexpr double initial_share = 1.0 / 3;  ///< of the pressure gained up to the knee

@@ -21,8 +21,9 @@ inline constexpr double shortest_piece = 1.0 / 40;
 /// knots on a lattice of forty steps are tried; from the best of them the knots are moved, together and by
 /// steps that halve, as long as that helps. For a single piece it is the regression line.
 ///
-/// x ascending with ten points or more in every fortieth of its range for a sound fit, in any case more than
-/// pieces + 1; 1 <= pieces <= 4. Throws std::invalid_argument otherwise, or for unequal lengths.
+/// x ascending, with two points or more in every fortieth of its range, since knots that leave a piece
+/// undetermined are passed over; in any case more points than pieces + 1; 1 <= pieces <= 4. Throws
+/// std::invalid_argument otherwise, or for unequal lengths.
 Polyline fit_polyline(const std::vector<double>& x, const std::vector<double>& y, int pieces);
 
 }  // namespace mpm::vv

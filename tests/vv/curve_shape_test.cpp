@@ -227,14 +227,16 @@ TEST(CurveShape, NeedsEnoughSamplesAndNumbersOnly) {
   EXPECT_TRUE(shape_of(few));
   few.pressure[4] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(shape_of(few));
-  // A bend before the fourth sample leaves no parabola.
-  LoadCurve steep;
-  for (int i = 0; i < 30; ++i) {
-    steep.settlement.push_back(i);
-    steep.pressure.push_back(i < 3 ? 10.0 * i : 30.0 + i);
+  // The first third of the way to the bend must have eight samples, the eighth at 7.
+  for (const double bend : {20.0, 24.0}) {
+    LoadCurve steep;
+    for (int i = 0; i < 200; ++i) {
+      steep.settlement.push_back(i);
+      steep.pressure.push_back(i < bend ? 10.0 * i : 10.0 * bend);
+    }
+    ASSERT_TRUE(shape_of(steep));
+    EXPECT_EQ(shape_of(steep)->initial_stiffness.has_value(), bend > 22) << bend;
   }
-  ASSERT_TRUE(shape_of(steep));
-  EXPECT_FALSE(shape_of(steep)->initial_stiffness);
 }
 
 }  // namespace
