@@ -147,18 +147,48 @@ void read_across(const JsonPlace& place, const Case& read, Gate& gate) {
   gate.across = axis.parameter;
 }
 
-Gate read_gate(const JsonPlace& place, const Case& read) {
-  place.allow_only({"id", "metric", "statistic", "across", "where", "at_most", "at_least", "basis", "reason",
-                    "must_fail"});
-  Gate gate;
-  gate.id = place["id"].own_identifier(ids_of(read.gates));
-  gate.metric = read_metric(place["metric"], read);
-  if (const JsonPlace statistic = place["statistic"]; statistic.present()) {
-    gate.statistic = statistic.choice<Statistic>({{"value", Statistic::value},
-                                                  {"reduction", Statistic::reduction},
-                                                  {"worst_ratio", Statistic::worst_ratio},
-                                                  {"last_order", Statistic::last_order}});
+Statistic read_statistic(const JsonPlace& place) {
+  if (!place.present()) return Statistic::value;
+  return place.choice<Statistic>({{"value", Statistic::value},
+                                  {"reduction", Statistic::reduction},
+                                  {"worst_ratio", Statistic::worst_ratio},
+                                  {"last_order", Statistic::last_order},
+                                  {"least_ratio", Statistic::least_ratio},
+                                  {"spread", Statistic::spread},
+                                  {"curve_spread", Statistic::curve_spread}});
+}
+
+/// What a gate looks at: a metric or, to compare whole curves, a curve and a stretch of it.
+void read_object(const JsonPlace& place, const Case& read, Gate& gate) {
+  if (gate.statistic != Statistic::curve_spread) {
+    gate.metric = read_metric(place["metric"], read);
+    return;
   }
+  gate.curve = read_curve_name(place["curve"], read);
+  gate.within = read_within(place["within"], read);
+  if (place["from"].present()) gate.from = read_abscissa(place["from"], read);
+  if (place["up_to"].present()) gate.up_to = read_abscissa(place["up_to"], read);
+  if (gate.from && gate.up_to && !(*gate.up_to > *gate.from))
+    place["up_to"].refuse("an end beyond where the stretch begins");
+}
+
+/// The keys a gate on a metric or on a curve may have.
+std::vector<std::string> gate_keys(Statistic statistic) {
+  std::vector<std::string> keys = {"id",       "statistic", "across", "where",    "at_most",
+                                   "at_least", "basis",     "reason", "must_fail"};
+  if (statistic == Statistic::curve_spread)
+    keys.insert(keys.begin() + 1, {"curve", "from", "up_to", "within"});
+  else
+    keys.insert(keys.begin() + 1, "metric");
+  return keys;
+}
+
+Gate read_gate(const JsonPlace& place, const Case& read) {
+  Gate gate;
+  gate.statistic = read_statistic(place["statistic"]);
+  place.allow_only(gate_keys(gate.statistic));
+  gate.id = place["id"].own_identifier(ids_of(read.gates));
+  read_object(place, read, gate);
   gate.where = read_where(place["where"], read.sweep);
   read_across(place["across"], read, gate);
   read_threshold(place, gate);

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 
 #include "vv/curves.hpp"
@@ -112,6 +114,28 @@ double observed_order(double coarse_error, double fine_error, double coarse_size
   return std::log(coarse_error / fine_error) / std::log(coarse_size / fine_size);
 }
 
+/// The steps of a series, each value over the one before.
+std::vector<double> ratios_of(const std::vector<double>& values) {
+  std::vector<double> ratios;
+  for (std::size_t k = 0; k + 1 < values.size(); ++k) ratios.push_back(values[k + 1] / values[k]);
+  return ratios;
+}
+
+/// The last in the order of `less`; not a number if any is not, where std::max_element may lose it.
+template <class Less>
+double extreme_of(const std::vector<double>& values, Less less) {
+  if (std::any_of(values.begin(), values.end(), [](double value) { return std::isnan(value); }))
+    return not_measured;
+  return *std::max_element(values.begin(), values.end(), less);
+}
+
+double spread_of(const std::vector<double>& values) {
+  const auto [least, most] = std::minmax_element(values.begin(), values.end());
+  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+  return (*most - *least) / std::abs(mean);
+}
+
+/// Of finite values, at least two.
 double statistic_of(Statistic statistic, const std::vector<double>& values,
                     const std::vector<double>& cell_size) {
   const std::size_t last = values.size() - 1;
@@ -120,18 +144,47 @@ double statistic_of(Statistic statistic, const std::vector<double>& values,
       return values[last];
     case Statistic::reduction:
       return values[0] / values[last];
-    case Statistic::worst_ratio: {
-      double worst = values[1] / values[0];
-      for (std::size_t k = 1; k < last; ++k) {
-        const double ratio = values[k + 1] / values[k];
-        if (!(ratio <= worst) && !std::isnan(worst)) worst = ratio;  // a NaN must win and stay
-      }
-      return worst;
-    }
+    case Statistic::worst_ratio:
+      return extreme_of(ratios_of(values), std::less<>());
+    case Statistic::least_ratio:
+      return extreme_of(ratios_of(values), std::greater<>());
+    case Statistic::spread:
+      return spread_of(values);
     case Statistic::last_order:
       return observed_order(values[last - 1], values[last], cell_size[last - 1], cell_size[last]);
+    case Statistic::curve_spread:
+      break;  // has no values
   }
   return not_measured;
+}
+
+/// Adds to what a series lacks: the first run is told of, and ending early excuses all runs or none.
+void add_lack(Measurement& lacking, const RunVerdict& run, const std::string& detail, bool ended_early) {
+  const bool first = lacking.detail.empty();
+  if (first) lacking.detail = scope_of(run.parameters) + ": " + detail;
+  lacking.ended_early = ended_early && (first || lacking.ended_early);
+}
+
+/// The same where the run's curve is to blame.
+void add_lack_of_curve(Measurement& lacking, const RunVerdict& run, const std::string& lack) {
+  const bool completed = run.record.completed();
+  add_lack(lacking, run, completed ? lack : ending_of(run.record) + ", " + lack,
+           !completed && run.record.failure.empty());
+}
+
+/// How far apart the curves of a series are.
+Measurement measure_curves(const Gate& gate, const std::vector<const RunVerdict*>& levels) {
+  std::vector<const Curve*> curves;
+  Measurement lacking;
+  for (const RunVerdict* level : levels) {
+    curves.push_back(find_curve(level->curves, gate.curve, "run"));
+    if (!curves.back()) add_lack_of_curve(lacking, *level, "the run has no curve " + gate.curve);
+  }
+  if (!lacking.detail.empty()) return lacking;
+  const ReadOff spread = curve_spread(curves, {gate.from, gate.up_to}, gate.within);
+  if (spread.lack.empty()) return {.value = spread.value, .detail = {}};
+  add_lack_of_curve(lacking, *levels[spread.of], spread.lack);
+  return lacking;
 }
 
 /// A statistic of a series; without a value it tells of the first run that lacks one.
@@ -141,15 +194,14 @@ Measurement measure(const Case& definition, const Gate& gate, const std::vector<
     return {.value = not_measured,
             .detail = fmt::format("a series needs two runs, this one has {}", levels.size())};
   }
+  if (gate.statistic == Statistic::curve_spread) return measure_curves(gate, levels);
   std::vector<double> values;
   Measurement lacking;
   for (const RunVerdict* level : levels) {
     const Measurement measurement = measure(definition, *level, gate.metric);
     values.push_back(measurement.value);
-    if (std::isfinite(measurement.value)) continue;
-    const bool first = lacking.detail.empty();
-    if (first) lacking.detail = scope_of(level->parameters) + ": " + measurement.detail;
-    lacking.ended_early = measurement.ended_early && (first || lacking.ended_early);
+    if (!std::isfinite(measurement.value))
+      add_lack(lacking, *level, measurement.detail, measurement.ended_early);
   }
   if (!lacking.detail.empty()) return lacking;
   const double value = statistic_of(gate.statistic, values, cell_size);
@@ -173,6 +225,12 @@ const char* name_of_statistic(Statistic statistic) {
       return "worst_ratio";
     case Statistic::last_order:
       return "last_order";
+    case Statistic::least_ratio:
+      return "least_ratio";
+    case Statistic::spread:
+      return "spread";
+    case Statistic::curve_spread:
+      return "curve_spread";
   }
   return "value";
 }
@@ -187,7 +245,7 @@ GateStatus status_of(const Gate& gate, const Measurement& measurement) {
 
 GateResult result_of(const Gate& gate, const std::string& scope, const Measurement& measurement) {
   GateResult result{.id = gate.id,
-                    .metric = gate.metric,
+                    .metric = gate.metric.empty() ? gate.curve : gate.metric,
                     .statistic = name_of_statistic(gate.statistic),
                     .basis = gate.basis,
                     .reason = gate.reason,

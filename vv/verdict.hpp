@@ -28,7 +28,7 @@ enum class GateStatus {
 
 /// A gate applied to one run or one series of runs.
 struct GateResult {
-  std::string id, metric, statistic, basis, reason;
+  std::string id, metric, statistic, basis, reason;  ///< the metric of curve_spread is the curve
   std::string scope;   ///< the runs it was applied to, for a person: "50G, cpgimp"
   double value = 0.0;  ///< NaN when it could not be measured; then `detail` says why and the gate is red
   std::string op;      ///< "<=" or ">="
