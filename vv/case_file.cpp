@@ -131,13 +131,15 @@ void read_across(const JsonPlace& place, const Case& read, Gate& gate) {
   }
   const SweepAxis& axis = read_axis(place, read.sweep);
   const std::vector<Json> values = selected_values(axis, gate.where);
+  const bool in_cell_size =
+      gate.statistic == Statistic::last_order || gate.statistic == Statistic::discretisation_uncertainty;
   // One pair gives an order but nothing to tell that it has settled.
-  const std::size_t fewest = gate.statistic == Statistic::last_order ? 3 : 2;
+  const std::size_t fewest = in_cell_size ? 3 : 2;
   if (values.size() < fewest) {
     place.refuse("a parameter with at least " + std::to_string(fewest) + " selected values",
                  ", which has " + std::to_string(values.size()));
   }
-  if (gate.statistic == Statistic::last_order) {
+  if (in_cell_size) {
     if (is_element_case(read)) place.refuse("a parameter of a scene, which alone has cells to refine");
     // Observed orders are taken in the cell size, so it must fall from each level to the next.
     if (!refines(axis, values, read_subject(JsonPlace(&read.text, "")))) {
@@ -155,7 +157,8 @@ Statistic read_statistic(const JsonPlace& place) {
                                   {"last_order", Statistic::last_order},
                                   {"least_ratio", Statistic::least_ratio},
                                   {"spread", Statistic::spread},
-                                  {"curve_spread", Statistic::curve_spread}});
+                                  {"curve_spread", Statistic::curve_spread},
+                                  {"discretisation_uncertainty", Statistic::discretisation_uncertainty}});
 }
 
 /// What a gate looks at: a metric or, to compare whole curves, a curve and a stretch of it.

@@ -40,6 +40,8 @@ enum class Statistic {
   least_ratio,   ///< smallest (next / previous) along the series; above 1 means it grows at every step
   spread,        ///< (largest - smallest) / magnitude of the mean, of the series
   curve_spread,  ///< how far apart the curves of the series are: `curve_spread` of vv/curves.hpp
+  discretisation_uncertainty,  ///< of the last value, relative to it: `grid_convergence` of
+                               ///< vv/grid_convergence.hpp
 };
 
 /// A sweep value that restricts a gate or a figure to some runs: parameter and allowed values.

@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "vv/curves.hpp"
+#include "vv/grid_convergence.hpp"
 
 namespace mpm::vv {
 namespace {
@@ -153,7 +154,8 @@ double statistic_of(Statistic statistic, const std::vector<double>& values,
     case Statistic::last_order:
       return observed_order(values[last - 1], values[last], cell_size[last - 1], cell_size[last]);
     case Statistic::curve_spread:
-      break;  // has no values
+    case Statistic::discretisation_uncertainty:
+      break;  // are more than a number of the values
   }
   return not_measured;
 }
@@ -187,6 +189,16 @@ Measurement measure_curves(const Gate& gate, const std::vector<const RunVerdict*
   return lacking;
 }
 
+/// How certain the finest value of a series is; the detail says how that was found.
+Measurement measure_uncertainty(const std::vector<double>& values, const std::vector<double>& cell_size) {
+  const std::optional<GridConvergence> convergence = grid_convergence(cell_size, values);
+  if (convergence) return {.value = convergence->uncertainty, .detail = convergence->method};
+  return {.value = not_measured,
+          .detail =
+              "it takes three levels, each with smaller cells than the one before, and a last value that is "
+              "not 0"};
+}
+
 /// A statistic of a series; without a value it tells of the first run that lacks one.
 Measurement measure(const Case& definition, const Gate& gate, const std::vector<const RunVerdict*>& levels,
                     const std::vector<double>& cell_size) {
@@ -204,6 +216,7 @@ Measurement measure(const Case& definition, const Gate& gate, const std::vector<
       add_lack(lacking, *level, measurement.detail, measurement.ended_early);
   }
   if (!lacking.detail.empty()) return lacking;
+  if (gate.statistic == Statistic::discretisation_uncertainty) return measure_uncertainty(values, cell_size);
   const double value = statistic_of(gate.statistic, values, cell_size);
   if (std::isfinite(value)) return {.value = value, .detail = {}};
   return {.value = not_measured, .detail = "the statistic of these values is not a finite number"};
@@ -231,6 +244,8 @@ const char* name_of_statistic(Statistic statistic) {
       return "spread";
     case Statistic::curve_spread:
       return "curve_spread";
+    case Statistic::discretisation_uncertainty:
+      return "discretisation_uncertainty";
   }
   return "value";
 }
@@ -433,8 +448,16 @@ class Bench {
       for (const RunVerdict* level : levels) values.push_back(measure(definition(), *level, metric).value);
       std::vector<double> orders = orders_of(values, series.cell_size);
       if (!orders.empty()) series.orders[metric] = std::move(orders);
+      if (!has_uncertainty(metric)) continue;
+      if (std::optional<GridConvergence> found = grid_convergence(series.cell_size, values))
+        series.convergence[metric] = *std::move(found);
     }
     return series;
+  }
+
+  /// Whether a metric is a value of its own, which goes to a limit other than zero. Errors have their orders.
+  static bool has_uncertainty(const std::string& metric) {
+    return metric.starts_with(reading_prefix) || metric.starts_with("load_curve.");
   }
 
   /// Empty unless every value is positive and every level is finer than the one before: else there is no

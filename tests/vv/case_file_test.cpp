@@ -426,6 +426,22 @@ TEST(CaseFile, reads_gates_on_series_of_any_kind) {
   EXPECT_EQ(read.gates[2].statistic, Statistic::least_ratio);
 }
 
+TEST(CaseFile, needs_three_falling_cell_sizes_for_the_uncertainty_of_the_discretisation) {
+  Json text = valid_case();
+  text["gates"][2]["statistic"] = "discretisation_uncertainty";
+  EXPECT_EQ(parsed(text).gates[2].statistic, Statistic::discretisation_uncertainty);
+  EXPECT_FALSE(schema_violation(text));
+  text["gates"][2]["where"] = Json::parse(R"({ "/scene/grid/cell_size": ["0.1 m", "0.05 m"] })");
+  expect_message(refusal_of(text.dump()), "column.json", "/gates/2/across", "at least 3 selected values",
+                 "which has 2");
+  text = strip_at_speeds();
+  text["gates"][1]["statistic"] = "discretisation_uncertainty";
+  expect_message(refusal_of(text.dump()), "column.json", "/gates/1/across",
+                 "makes the cell size smaller from each value to the next", "\"speed\"");
+  text["gates"][1].erase("across");
+  EXPECT_TRUE(schema_violation(text));
+}
+
 TEST(CaseFile, says_which_comparison_of_a_series_is_wrong_and_where) {
   struct Wrong {
     const char *patch, *pointer, *expected, *found;

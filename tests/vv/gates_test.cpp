@@ -311,6 +311,64 @@ TEST(SeriesStatistic, SpreadIsTheRangeOverTheMean) {
   EXPECT_TRUE(std::isnan(result_over_settings(Statistic::spread, {-1.0, 1.0}).value));
 }
 
+/// 7 + h at 0.4, 0.2 and 0.1, and what is no number where cells are of size 0.2.
+Judgement first_order(const Case&, const RunRequest& of, const Record&) {
+  const double size = of.scene.cell_size;
+  return {{{"error", 7.0 + size},
+           {"reading.late", 7.0 + size},
+           {"load_curve.peak", size == 0.2 ? 9.0 : 7.0},
+           {"reading.constant", 0.0}},
+          {}};
+}
+
+TEST(SeriesStatistic, DiscretisationUncertaintyIsOfTheFinestLevel) {
+  const Gate applied = series_gate(Statistic::discretisation_uncertainty, Comparison::at_most, 0.02);
+  const GateResult result = series_result(applied, std::vector<Record>(6), first_order);
+  EXPECT_NEAR(result.value, 1.25 * 0.1 / 7.1, 1e-9);
+  EXPECT_EQ(result.statistic, "discretisation_uncertainty");
+  EXPECT_EQ(result.status, GateStatus::pass);
+  EXPECT_EQ(result.detail, "grid convergence index at the observed order 1.00");
+  Gate of_none = applied;
+  of_none.metric = "reading.constant";
+  const GateResult none = series_result(of_none, std::vector<Record>(6), first_order);
+  EXPECT_EQ(none.status, GateStatus::fail);
+  EXPECT_TRUE(std::isnan(none.value));
+  Gate short_series = applied;
+  short_series.where.push_back({cells, {0.4, 0.2}});
+  EXPECT_EQ(series_result(short_series, std::vector<Record>(6), first_order).detail.substr(0, 21),
+            "it takes three levels");
+}
+
+TEST(Series, KnowsWhereReadingsAndLoadCurvesConverge) {
+  Case definition = refinement();
+  definition.gates = {series_gate(Statistic::reduction, Comparison::at_least, 1)};
+  CampaignVerdict campaign;
+  campaign.cases = {judge_case(definition, std::vector<Record>(6), first_order)};
+  const auto& convergence = campaign.cases[0].series.at(1).convergence;
+  EXPECT_FALSE(convergence.contains("error")) << "an error goes to zero: it has orders, and no other limit";
+  EXPECT_FALSE(convergence.contains("reading.constant"));
+  EXPECT_NEAR(convergence.at("reading.late").extrapolated, 7.0, 1e-9);
+  EXPECT_NEAR(convergence.at("load_curve.peak").uncertainty, 2.0 / 7.0, 1e-12);
+  const Json json = Json::parse(to_json(campaign).dump())["cases"][0]["series"][1]["convergence"];
+  EXPECT_EQ(json.size(), 2u);
+  EXPECT_NEAR(json["reading.late"]["order"].get<double>(), 1.0, 1e-9);
+  EXPECT_NEAR(json["reading.late"]["extrapolated"].get<double>(), 7.0, 1e-9);
+  EXPECT_NEAR(json["reading.late"]["uncertainty"].get<double>(), 0.125 / 7.1, 1e-9);
+  EXPECT_EQ(json["reading.late"]["monotone"], true);
+  EXPECT_EQ(json["reading.late"]["method"], "grid convergence index at the observed order 1.00");
+  EXPECT_EQ(json["load_curve.peak"]["monotone"], false);
+  EXPECT_TRUE(json["load_curve.peak"]["order"].is_null());
+  EXPECT_TRUE(json["load_curve.peak"]["extrapolated"].is_null());
+}
+
+TEST(Series, HasNoConvergenceWithoutThreeSizesOfCells) {
+  Case definition = refinement();
+  definition.gates = {series_gate(Statistic::reduction, Comparison::at_least, 1)};
+  for (RunRequest& run : definition.runs)
+    if (run.scene.cell_size == 0.1) run.scene.cell_size = 0.2;
+  EXPECT_TRUE(judge_case(definition, std::vector<Record>(6), first_order).series.at(1).convergence.empty());
+}
+
 /// Lines of slope 1 / cell size up to these ends, coarse to fine; no curve where the end is 0.
 GateResult curve_result(const Gate& applied, const std::vector<double>& ends, std::vector<Record> records) {
   Case definition;
