@@ -72,6 +72,14 @@ Lanes<Real> lane_numbers() {
   (std::make_integer_sequence<int, lane_count<Real>>{});
 }
 
+/// One lane of many.
+template <class Real>
+Real lane_of(const Lanes<Real>& lanes, int lane) {
+  alignas(sizeof(Lanes<Real>)) std::array<Real, static_cast<std::size_t>(lane_count<Real>)> numbers;
+  lanes.store_aligned(numbers.data());
+  return numbers[static_cast<std::size_t>(lane)];
+}
+
 /// One lane of many replaced.
 template <class Real>
 void set_lane(Lanes<Real>& lanes, int lane, Real value) {

@@ -52,6 +52,16 @@ Deformation<Dim, Value> deformation_of(const std::array<Vector<Dim, Value>, Dim>
   return deformation;
 }
 
+/// Gives a deformation another dilation, and leaves its deviator in the plane: both directions take half of
+/// the change [Hughes80].
+template <class Value>
+void set_dilation(const Value& dilation, Deformation<2, Value>& deformation) {
+  const Value change = (dilation - trace<2, Value>(deformation.strain_increment)) / 2;
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    deformation.strain_increment[axis] = deformation.strain_increment[axis] + change;
+  }
+}
+
 /// Updates particles whose bodies follow one law, lanes of them at a time.
 template <int Dim, class Real>
 class StressUpdate {

@@ -253,6 +253,16 @@ void check_initial_stress(const Scene& scene, const Body& body, const std::strin
              *body.initial_stress);
 }
 
+void check_locking_control(const Scene& scene, const Body& body, const std::string& place) {
+  require_known(body.locking_control, {LockingControl::none, LockingControl::cell_average}, place,
+                "locking control");
+  if (body.locking_control == LockingControl::none) return;
+  require(scene.dimension == 2, place, "none in one dimension, where a particle can do nothing but dilate",
+          "cell_average");
+  require(!std::holds_alternative<NeoHookean>(body.material), place,
+          "none with a law whose stress follows from the deformation gradient", "cell_average");
+}
+
 /// Returns the number of particles of the body's block.
 double check_body(const Scene& scene, const Body& body, const std::string& place) {
   require(!body.name.empty(), place + "/name", "a name", "an empty text");
@@ -269,6 +279,7 @@ double check_body(const Scene& scene, const Body& body, const std::string& place
   require_few_particles(particles, place);
   require_ring_hits(scene, body, place + "/ring");
   check_initial_stress(scene, body, place + "/initial_stress");
+  check_locking_control(scene, body, place + "/locking_control");
   return particles;
 }
 

@@ -28,6 +28,10 @@ enum class Precision { float64, float32 };
 /// turns it by the spin of the velocity field. In one dimension nothing turns.
 enum class Objectivity { none, jaumann };
 
+/// Whose dilation a particle takes: its own (`none`), or the mean of those in its cell (`cell_average`), and
+/// with it the mean of the cell's normal stresses in the nodal forces; see `CellAverage`.
+enum class LockingControl { none, cell_average };
+
 /// Velocity condition on an edge of the grid: none, normal component zero, all components zero.
 /// In one dimension `roller` and `fixed` are the same.
 enum class Condition { free, roller, fixed };
@@ -103,6 +107,8 @@ struct Body {
   PerAxis velocity{};  ///< initial [m/s]
   std::optional<InitialStress> initial_stress;
   Material material = LinearElastic{0.0, 0.0};
+  LockingControl locking_control =
+      LockingControl::none;  ///< two dimensions, `LinearElastic` or `MohrCoulomb`
 
   double density_at(double time) const;  ///< of initial volume, at `time` [s] [kg/m^3]
 };

@@ -3,6 +3,7 @@
 #include <variant>
 #include <vector>
 
+#include "solver/cell_average.hpp"
 #include "solver/cell_blocks.hpp"
 #include "solver/grid_motion.hpp"
 #include "solver/loading.hpp"
@@ -32,6 +33,7 @@ class TimeStepper {
         damping_(static_cast<Real>(scene.damping)),
         empty_mass_(empty_node_mass_ratio<Real> *
                     static_cast<Real>(total_mass(particles_) / static_cast<double>(particles_.count()))),
+        average_(scene, grid_),
         blocks_(grid_, SchemeTraits<scheme>::Shape::nodes_before, particles_),
         workers_(threads) {
     open_logs();
@@ -52,6 +54,7 @@ class TimeStepper {
       take_velocity_from_momentum();
       update_stress_and_scatter_force();
     } else {
+      average_stress();
       scatter<Sends{.mass = true, .momentum = true, .internal_force = true}>();
     }
     move_grid(gravity);
@@ -102,21 +105,22 @@ class TimeStepper {
 
   template <Sends sends>
   void scatter() {
-    for_each_block_in_two_colours([&](const Block& block, std::size_t, Log&) {
+    for_each_block_in_two_colours([&](const Block& block, std::size_t body, Log&) {
       Transfers::for_each_layers(particles_, grid_, block, [&](const Layers& layers, std::size_t count) {
-        scatter<sends>(block, layers, count);
+        scatter<sends>(body, block, layers, count);
       });
     });
   }
 
   /// With the internal force go the external ones of a scene that has them.
   template <Sends sends>
-  void scatter(const Block& block, const Layers& layers, std::size_t count) {
+  void scatter(std::size_t body, const Block& block, const Layers& layers, std::size_t count) {
+    const CellAverage<Dim, Real>* const mean_stress = average_.is_wanted_by(body) ? &average_ : nullptr;
     constexpr Sends with_loads{sends.mass, sends.momentum, sends.internal_force, sends.internal_force};
     if (loading_.has_forces()) {
-      Transfers::template scatter<with_loads>(particles_, block, layers, count, grid_);
+      Transfers::template scatter<with_loads>(particles_, block, layers, count, grid_, mean_stress);
     } else {
-      Transfers::template scatter<sends>(particles_, block, layers, count, grid_);
+      Transfers::template scatter<sends>(particles_, block, layers, count, grid_, mean_stress);
     }
   }
 
@@ -144,17 +148,63 @@ class TimeStepper {
     rigid_bodies_.set_motion(grid_, empty_mass_);
   }
 
+  /// Averages a number of the particles over the cells, `own(block, layer)`.
+  template <class Own>
+  void average_over_cells(Own&& own) {
+    in_rows([&](Rows rows) { average_.clear(grid_, rows); });
+    for_each_block_in_two_colours([&](const Block& block, std::size_t body, Log&) {
+      if (!average_.is_wanted_by(body)) return;
+      Value content(0), volume(0);
+      Transfers::for_each_layer(particles_, grid_, block, [&](const Layer& layer) {
+        Value volume_of_layer = volume_of(layer.slot);
+        Value content_of_layer = volume_of_layer * own(block, layer);
+        Transfers::for_each_stray(particles_, grid_, block, layer, [&](int lane, Eigen::Index cell) {
+          average_.add(cell, lane_of<Real>(content_of_layer, lane), lane_of<Real>(volume_of_layer, lane));
+          set_lane(content_of_layer, lane, Real(0));
+          set_lane(volume_of_layer, lane, Real(0));
+        });
+        content = content + content_of_layer;
+        volume = volume + volume_of_layer;
+      });
+      average_.add(Transfers::cell_of(block, grid_), content, volume);
+    });
+  }
+
+  /// Before the stress is updated, for bodies that share their dilation.
+  void average_dilation() {
+    if (!average_.is_wanted()) return;
+    average_over_cells([&](const Block& block, const Layer& layer) {
+      return trace<Dim, Value>(own_deformation_of_layer(block, layer).strain_increment);
+    });
+  }
+
+  /// Before internal forces are sent, for bodies that share their dilation: of the normal stresses in the
+  /// plane.
+  void average_stress() {
+    if constexpr (Dim == 2) {
+      if (!average_.is_wanted()) return;
+      average_over_cells([&](const Block&, const Layer& layer) {
+        return (load<Value>(&particles_.stress[0][layer.slot]) +
+                load<Value>(&particles_.stress[1][layer.slot])) /
+               2;
+      });
+    }
+  }
+
   /// USL.
   void move_particles_and_update_stress() {
-    for_each_layer_with_law([&](const auto& law, const Block& block, const Layer& layer, Log& log) {
-      const Motion motion = Transfers::template gather<true, true>(particles_, grid_, block, layer);
-      const Value time_step = time_step_of(layer.slot);
-      const Vector<Dim, Value> travel = accelerate_layer(motion, time_step, layer.slot);
-      const auto deformation = deformation_of<Dim, Value>(motion.gradient, time_step);
-      update_stress_(law, deformation, layer.slot, particles_);
-      grow(deformation, layer.slot);
-      move(travel, block, layer.slot, log);
-    });
+    average_dilation();
+    for_each_layer_with_law(
+        [&](const auto& law, std::size_t body, const Block& block, const Layer& layer, Log& log) {
+          const Motion motion = Transfers::template gather<true, true>(particles_, grid_, block, layer);
+          const Value time_step = time_step_of(layer.slot);
+          const Vector<Dim, Value> travel = accelerate_layer(motion, time_step, layer.slot);
+          auto deformation = deformation_of<Dim, Value>(motion.gradient, time_step);
+          share_dilation(body, block, layer, deformation);
+          update_stress_(law, deformation, layer.slot, particles_);
+          grow(deformation, layer.slot);
+          move(travel, block, layer.slot, log);
+        });
   }
 
   /// MUSL, first half: the travel of the particles waits in `pending` for the weights to be used once more.
@@ -174,22 +224,25 @@ class TimeStepper {
 
   /// MUSL, second half.
   void update_stress_and_move_particles() {
-    for_each_layer_with_law([&](const auto& law, const Block& block, const Layer& layer, Log& log) {
-      const auto deformation = deformation_of_layer(block, layer);
-      update_stress_(law, deformation, layer.slot, particles_);
-      grow(deformation, layer.slot);
-      Vector<Dim, Value> travel;
-      for (std::size_t a = 0; a < Dim; ++a) travel[a] = load<Value>(&particles_.pending[a][layer.slot]);
-      move(travel, block, layer.slot, log);
-    });
+    average_dilation();
+    for_each_layer_with_law(
+        [&](const auto& law, std::size_t body, const Block& block, const Layer& layer, Log& log) {
+          const auto deformation = deformation_of_layer(body, block, layer);
+          update_stress_(law, deformation, layer.slot, particles_);
+          grow(deformation, layer.slot);
+          Vector<Dim, Value> travel;
+          for (std::size_t a = 0; a < Dim; ++a) travel[a] = load<Value>(&particles_.pending[a][layer.slot]);
+          move(travel, block, layer.slot, log);
+        });
   }
 
   /// USF, first half: the growth of the domains waits in `pending` for the weights to be used once more.
   void update_stress_and_scatter_force() {
+    average_dilation();
     for_each_block_in_two_colours([&](const Block& block, std::size_t body, Log&) {
       Transfers::for_each_layers(particles_, grid_, block, [&](const Layers& layers, std::size_t count) {
         for (std::size_t k = 0; k < count; ++k) {
-          const auto deformation = deformation_of_layer(block, layers[k]);
+          const auto deformation = deformation_of_layer(body, block, layers[k]);
           std::visit([&](const auto& law) { update_stress_(law, deformation, layers[k].slot, particles_); },
                      laws_[body]);
           if constexpr (SchemeTraits<scheme>::updates_half_size) {
@@ -198,9 +251,12 @@ class TimeStepper {
             }
           }
         }
-        scatter<Sends{.internal_force = true}>(block, layers, count);
+        if (!average_.is_wanted()) scatter<Sends{.internal_force = true}>(body, block, layers, count);
       });
     });
+    if (!average_.is_wanted()) return;
+    average_stress();  // which takes the stresses of all particles of a cell
+    scatter<Sends{.internal_force = true}>();
   }
 
   /// USF, second half.
@@ -227,9 +283,37 @@ class TimeStepper {
     return select(load<Value>(&particles_.mass[slot]) > Value(0), Value(time_step_), Value(0));
   }
 
-  Deformation<Dim, Value> deformation_of_layer(const Block& block, const Layer& layer) const {
+  /// Volumes, and none in empty slots.
+  Value volume_of(Eigen::Index slot) const {
+    return select(load<Value>(&particles_.mass[slot]) > Value(0), load<Value>(&particles_.volume[slot]),
+                  Value(0));
+  }
+
+  /// What the stress and the volume of a body's particles follow.
+  Deformation<Dim, Value> deformation_of_layer(std::size_t body, const Block& block,
+                                               const Layer& layer) const {
+    Deformation<Dim, Value> deformation = own_deformation_of_layer(block, layer);
+    share_dilation(body, block, layer, deformation);
+    return deformation;
+  }
+
+  Deformation<Dim, Value> own_deformation_of_layer(const Block& block, const Layer& layer) const {
     const Motion motion = Transfers::template gather<false, true>(particles_, grid_, block, layer);
     return deformation_of<Dim, Value>(motion.gradient, time_step_of(layer.slot));
+  }
+
+  /// In a body that asks for it, the mean dilation of its cell takes the place of each particle's own.
+  void share_dilation(std::size_t body, const Block& block, const Layer& layer,
+                      Deformation<Dim, Value>& deformation) const {
+    if constexpr (Dim == 2) {
+      if (!average_.is_wanted_by(body)) return;
+      Value mean = average_.template mean<Value>(Transfers::cell_of(block, grid_));
+      Transfers::for_each_stray(particles_, grid_, block, layer, [&](int lane, Eigen::Index cell) {
+        set_lane(mean, lane, average_.template mean<Real>(cell));
+      });
+      const auto is_particle = load<Value>(&particles_.mass[layer.slot]) > Value(0);
+      set_dilation(select(is_particle, mean, Value(0)), deformation);
+    }
   }
 
   /// Velocities after the step, a blend of the grid's velocity (`flip` 0, PIC) and the grid's acceleration
@@ -351,7 +435,7 @@ class TimeStepper {
     });
   }
 
-  /// Likewise, with the law of the layer's body: calls `visit(law, block, layer, log)`.
+  /// Likewise, with the law of the layer's body: calls `visit(law, body, block, layer, log)`.
   template <class Visit>
   void for_each_layer_with_law(Visit&& visit) {
     workers_.run(static_cast<int>(logs_.size()), [&](int band) {
@@ -363,7 +447,7 @@ class TimeStepper {
               for (std::size_t k = begin; k < end; ++k) {
                 const Block& block = blocks_.blocks()[k];
                 Transfers::for_each_layer(particles_, grid_, block,
-                                          [&](const Layer& layer) { visit(law, block, layer, log); });
+                                          [&](const Layer& layer) { visit(law, body, block, layer, log); });
               }
             },
             laws_[body]);
@@ -392,6 +476,7 @@ class TimeStepper {
   UpdateOrder order_;
   Real time_step_, flip_, damping_, empty_mass_;
   bool has_fault_ = false, is_disordered_ = false;
+  CellAverage<Dim, Real> average_;
   std::int64_t cell_crossings_ = 0, arrangements_ = 0;
   CellBlocks<Dim, Real> blocks_;
   std::vector<Log> logs_;

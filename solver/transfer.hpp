@@ -5,6 +5,7 @@
 #include <cmath>
 #include <span>
 
+#include "solver/cell_average.hpp"
 #include "solver/cell_blocks.hpp"
 #include "solver/grid.hpp"
 #include "solver/lanes.hpp"
@@ -91,15 +92,31 @@ class Transfer {
     }
   }
 
-  /// Adds what the particles of some layers send to the grid [Kiriyama15, Eqs. 1, 2, 3 and 9].
+  /// Adds what the particles of some layers send to the grid [Kiriyama15, Eqs. 1, 2, 3 and 9]. With
+  /// `mean_stress`, the internal force is that of the cells' means of the normal stresses in the plane.
   template <Sends sends>
   static void scatter(const Points& particles, const Block& block, const Layers& layers, std::size_t count,
-                      Nodes& grid);
+                      Nodes& grid, const CellAverage<Dim, Real>* mean_stress = nullptr);
 
   /// What the particles of a layer see of the grid's motion [Kiriyama15, Eqs. 5 to 8 and 10a].
   template <bool motion, bool gradient>
   static GridMotion<Dim, Value> gather(const Points& particles, const Nodes& grid, const Block& block,
                                        const Layer& layer);
+
+  /// The index of the lower node of a block's first cell. Numbers of cells lie at those of their lower nodes,
+  /// so that those of a block's lanes lie side by side.
+  static Eigen::Index cell_of(const Block& block, const Nodes& grid) {
+    return Eigen::Index(block.row) * grid.row_stride() + block.first_cell;
+  }
+
+  /// Calls `visit(lane, cell)` for the strays of a layer, with the index of the cell they are in.
+  template <class Visit>
+  static void for_each_stray(const Points& particles, const Nodes& grid, const Block& block,
+                             const Layer& layer, Visit&& visit) {
+    if (!layer.has_strays) return;
+    for_each_stray(particles, grid, block, layer.slot,
+                   [&](int lane) { visit(lane, cell_of_stray(particles, grid, layer.slot + lane)); });
+  }
 
   /// The first particle that cannot have a stencil, or whose stress or velocity is not finite; why; and its
   /// offending value in SI units.
@@ -143,8 +160,12 @@ class Transfer {
   template <class V>
   static void evaluate(const Vector<Dim, V>& place, const Vector<Dim, V>& half_size, Real per_length,
                        Stencil<Dim, V, Shape>& stencil);
+  static Eigen::Index cell_of_stray(const Points& particles, const Nodes& grid, Eigen::Index slot);
   template <Sends sends, class V>
   static ParticleSums<Dim, V> read(const Points& particles, Eigen::Index slot);
+  template <class V>
+  static void set_mean_stress(const V& mean, const Points& particles, Eigen::Index slot,
+                              ParticleSums<Dim, V>& sums);
   template <class V>
   static V at(const Field<Real>& field, Eigen::Index slot) {
     return load<V>(&field[slot]);
@@ -252,6 +273,29 @@ ParticleSums<Dim, V> Transfer<Dim, Real, scheme>::read(const Points& particles, 
   return sums;
 }
 
+template <int Dim, class Real, Scheme scheme>
+Eigen::Index Transfer<Dim, Real, scheme>::cell_of_stray(const Points& particles, const Nodes& grid,
+                                                        Eigen::Index slot) {
+  Eigen::Index cell = 0;
+  for (std::size_t axis = Dim; axis-- > 0;) {
+    const Real place = in_cells(grid, particles.position[axis][slot], axis);
+    cell = cell * grid.row_stride() + static_cast<std::int32_t>(place);
+  }
+  return cell;
+}
+
+/// Gives what particles send another mean of their normal stresses in the plane; empty slots send none.
+template <int Dim, class Real, Scheme scheme>
+template <class V>
+void Transfer<Dim, Real, scheme>::set_mean_stress(const V& mean, const Points& particles, Eigen::Index slot,
+                                                  ParticleSums<Dim, V>& sums) {
+  const V volume = select(at<V>(particles.mass, slot) > V(0), at<V>(particles.volume, slot), V(0));
+  const V change = -volume * mean - (sums.volume_stress[0] + sums.volume_stress[1]) / 2;
+  for (std::size_t axis = 0; axis < Dim; ++axis) {
+    sums.volume_stress[axis] = sums.volume_stress[axis] + change;
+  }
+}
+
 /// Adds the sums of `count` particles, or layers of them, to their nodes, which are the same for all.
 /// The force on a node is -V sigma . grad S; in two dimensions grad S = (S'x Sy, Sx S'y).
 template <int Dim, class Real, Scheme scheme>
@@ -328,16 +372,29 @@ void Transfer<Dim, Real, scheme>::add_to_nodes(const std::array<Value, Shape::wi
 template <int Dim, class Real, Scheme scheme>
 template <Sends sends>
 void Transfer<Dim, Real, scheme>::scatter(const Points& particles, const Block& block, const Layers& layers,
-                                          std::size_t count, Nodes& grid) {
+                                          std::size_t count, Nodes& grid,
+                                          const CellAverage<Dim, Real>* mean_stress) {
   std::array<ParticleSums<Dim, Value>, layers_at_once> sums;
   for (std::size_t k = 0; k < count; ++k) {
     sums[k] = read<sends, Value>(particles, layers[k].slot);
+    if constexpr (Dim == 2 && sends.internal_force) {
+      if (mean_stress != nullptr) {
+        const Value mean = mean_stress->template mean<Value>(cell_of(block, grid));
+        set_mean_stress(mean, particles, layers[k].slot, sums[k]);
+      }
+    }
     if (!layers[k].has_strays) continue;
     for_each_stray(particles, grid, block, layers[k].slot, [&](int lane) {
       Stencil<Dim, Real, Shape> stencil;
       const Eigen::Index slot = layers[k].slot + lane;
       const Place place = weigh_alone(particles, grid, slot, stencil);
-      const auto alone = read<sends, Real>(particles, slot);
+      auto alone = read<sends, Real>(particles, slot);
+      if constexpr (Dim == 2 && sends.internal_force) {
+        if (mean_stress != nullptr) {
+          const Real mean = mean_stress->template mean<Real>(cell_of_stray(particles, grid, slot));
+          set_mean_stress(mean, particles, slot, alone);
+        }
+      }
       add<sends, Real>(
           1, [&](std::size_t) -> auto& { return stencil; }, [&](std::size_t) -> auto& { return alone; },
           place, grid);

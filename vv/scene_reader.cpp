@@ -126,7 +126,7 @@ InitialStress read_initial_stress(const JsonPlace& place, std::size_t axes) {
 Body read_body(const JsonPlace& place, std::size_t axes) {
   place.allow_only(keys_of(axes,
                            {"name", "lower", "upper", "particles_per_cell", "density", "density_ramp",
-                            "velocity", "initial_stress", "material"},
+                            "velocity", "initial_stress", "material", "locking_control"},
                            {"ring"}));
   Body body;
   body.name = place["name"].identifier();
@@ -145,6 +145,10 @@ Body read_body(const JsonPlace& place, std::size_t axes) {
     body.initial_stress = read_initial_stress(stress, axes);
   }
   body.material = read_material(place["material"]);
+  if (const JsonPlace control = place["locking_control"]; control.present()) {
+    body.locking_control = control.choice<LockingControl>(
+        {{"none", LockingControl::none}, {"cell_average", LockingControl::cell_average}});
+  }
   return body;
 }
 

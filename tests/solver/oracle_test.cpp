@@ -301,7 +301,7 @@ TEST_P(RandomScenes, MoveAsTheyDoPlainly) {
   constexpr std::uint64_t rounds = 4, methods = 9;
   const std::uint64_t first =
       (GetParam().dimension == 1 ? 9 : 0) + (GetParam().precision == Precision::float32 ? 18 : 0);
-  std::set<std::pair<Scheme, UpdateOrder>> with_strays, with_order;
+  std::set<std::pair<Scheme, UpdateOrder>> with_strays, with_order, with_locking_control;
   int to_end = 0;
   double worst = 0, largest_relative = 0;
   std::int64_t steps_compared = 0, steps_wanted = 0, steps_with_strays = 0, arrangements = 0;
@@ -323,6 +323,11 @@ TEST_P(RandomScenes, MoveAsTheyDoPlainly) {
     largest_relative = std::max(largest_relative, met.largest_relative);
     if (met.steps_with_strays > 0) with_strays.emplace(scene.scheme, scene.update_order);
     if (met.arrangements > 0) with_order.emplace(scene.scheme, scene.update_order);
+    const bool has_control = std::any_of(scene.bodies.begin(), scene.bodies.end(), [](const Body& body) {
+      return body.locking_control == LockingControl::cell_average;
+    });
+    if (has_control && met.steps_with_strays > 0)
+      with_locking_control.emplace(scene.scheme, scene.update_order);
   }
   RecordProperty("scenes_compared_to_end", to_end);
   RecordProperty("steps_with_strays", static_cast<int>(steps_with_strays));
@@ -332,6 +337,7 @@ TEST_P(RandomScenes, MoveAsTheyDoPlainly) {
   RecordProperty("largest_relative_difference", std::to_string(1e12 * largest_relative) + "e-12");
   EXPECT_EQ(with_strays.size(), methods);
   EXPECT_EQ(with_order.size(), methods);
+  EXPECT_EQ(with_locking_control.size(), GetParam().dimension == 2 ? methods : 0);
   EXPECT_GE(to_end, static_cast<int>(rounds * methods) * 3 / 4);
   EXPECT_GE(steps_compared, steps_wanted * 3 / 4);
 }

@@ -276,6 +276,17 @@ const std::vector<Impossible>& impossible_scenes() {
       {"/termination/type", "at_time where gravity is zero", "at_rest",
        [](Scene& s) { s.gravity.acceleration = {0.0}; }},
 
+      {"/bodies/0/locking_control", "none in one dimension", "cell_average",
+       [](Scene& s) { body(s).locking_control = LockingControl::cell_average; }},
+      {"/bodies/0/locking_control", "none with a law whose stress follows from the deformation gradient",
+       "cell_average",
+       [](Scene& s) {
+         body(s).material = NeoHookean{1e7, 0.3};
+         body(s).locking_control = LockingControl::cell_average;
+       },
+       block()},
+      {"/bodies/0/locking_control", "a known locking control", "number 2 of none",
+       [](Scene& s) { body(s).locking_control = static_cast<LockingControl>(2); }, block()},
       {"/bodies/0/ring", "no ring in one dimension", "one",
        [](Scene& s) { body(s).ring = Ring{{0.5, 0.5}, 0.0, 0.5}; }},
       {"/bodies/0/ring/inner_radius", "zero or above", "-0.1 m",

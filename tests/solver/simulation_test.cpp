@@ -57,6 +57,32 @@ TEST(Simulation, AllocatesNothingInAStep) {
   }
 }
 
+TEST(Simulation, AllocatesNothingInAStepWithLockingControl) {
+  for (Scheme scheme : every_scheme) {
+    for (UpdateOrder order : every_order) {
+      for (Precision precision : {Precision::float64, Precision::float32}) {
+        Scene scene = column_scene(scheme);
+        scene.dimension = 2;
+        scene.update_order = order;
+        scene.precision = precision;
+        scene.grid_upper = {1.1, 0.5};
+        scene.bodies[0].upper = {1.0, 0.5};
+        scene.bodies[0].particles_per_cell = {2, 2};
+        scene.bodies[0].velocity = {0.0, 0.3};  // so that some go astray
+        scene.bodies[0].locking_control = LockingControl::cell_average;
+        scene.edges[1] = {Condition::roller, Condition::roller};
+        scene.termination = AtTime{1e9};
+        Simulation simulation(scene);
+        simulation.advance();
+        const long before = allocations;
+        for (int i = 0; i < 200; ++i) simulation.advance();
+        EXPECT_EQ(allocations - before, 0);
+        EXPECT_EQ(simulation.steps(), 201);
+      }
+    }
+  }
+}
+
 TEST(VerificationOfMotion, FreeFallIsExact) {
   for (Scheme scheme : every_scheme) {
     for (UpdateOrder order : every_order) {

@@ -91,7 +91,7 @@ TEST(Workers, ComeAndGo) {
 
 /// A pile between rollers that falls apart under gravity, with a plate that presses on it and a block that
 /// runs into it: more than 6000 particles in 40 rows or more.
-Scene pile(Scheme scheme, UpdateOrder order, Precision precision) {
+Scene pile(Scheme scheme, UpdateOrder order, Precision precision, LockingControl locking_control) {
   Scene scene;
   scene.dimension = 2;
   scene.scheme = scheme;
@@ -110,12 +110,14 @@ Scene pile(Scheme scheme, UpdateOrder order, Precision precision) {
   soil.particles_per_cell = {2, 2};
   soil.density = 1500.0;
   soil.material = MohrCoulomb{1e5, 0.3, 0.5, 500.0, 0.1};
+  soil.locking_control = locking_control;
   Body rubber = soil;
   rubber.name = "rubber";
   rubber.lower = {3.8, 0.9};
   rubber.upper = {5.1, 4.9};
   rubber.velocity = {-1.0, 0.5};
   rubber.material = NeoHookean{1e5, 0.3};
+  rubber.locking_control = LockingControl::none;
   Body load = soil;
   load.name = "load";
   load.lower = {0.2, 4.3};
@@ -180,12 +182,14 @@ struct Method {
   Scheme scheme;
   UpdateOrder order;
   Precision precision;
+  LockingControl locking_control = LockingControl::none;
 };
 
 class Threads : public testing::TestWithParam<Method> {};
 
 TEST_P(Threads, ChangeNoBit) {
-  const Scene scene = pile(GetParam().scheme, GetParam().order, GetParam().precision);
+  const Scene scene =
+      pile(GetParam().scheme, GetParam().order, GetParam().precision, GetParam().locking_control);
   constexpr int steps = 40;
   const Seen alone = run(scene, 1, steps);
   EXPECT_GE(alone.fields.mass.size(), 6000U);
@@ -204,6 +208,12 @@ INSTANTIATE_TEST_SUITE_P(Every, Threads,
                                          Method{Scheme::mpm, UpdateOrder::musl, Precision::float32},
                                          Method{Scheme::ugimp, UpdateOrder::usf, Precision::float64},
                                          Method{Scheme::cpgimp, UpdateOrder::musl, Precision::float64},
-                                         Method{Scheme::cpgimp, UpdateOrder::usf, Precision::float32}));
+                                         Method{Scheme::cpgimp, UpdateOrder::usf, Precision::float32},
+                                         Method{Scheme::ugimp, UpdateOrder::usl, Precision::float32,
+                                                LockingControl::cell_average},
+                                         Method{Scheme::cpgimp, UpdateOrder::musl, Precision::float64,
+                                                LockingControl::cell_average},
+                                         Method{Scheme::cpgimp, UpdateOrder::usf, Precision::float64,
+                                                LockingControl::cell_average}));
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 #include <random>
 #include <variant>
@@ -48,6 +49,7 @@ class PlainStepper {
                     static_cast<Real>(total_mass(particles_) / static_cast<double>(particles_.count()))),
         start_(particles_.position),
         travel_(static_cast<std::size_t>(particles_.count())),
+        growth_(travel_.size()),
         strain_(travel_.size()),
         is_disturbed_(disturbance != 0),
         random_(disturbance) {}
@@ -151,12 +153,19 @@ class PlainStepper {
   }
 
   void send_forces() {
+    const auto own = [&](Eigen::Index p) {
+      if constexpr (Dim == 1) return Real(0);
+      return (stress(p, 0, 0) + stress(p, Dim - 1, Dim - 1)) / 2;
+    };
+    const std::vector<Real> mean = averaged_over_cells(own);
     for_each_particle([&](Eigen::Index p, const Nodes& nodes) {
+      const Real change = mean[static_cast<std::size_t>(p)] - own(p);
       for (const auto& seen : nodes) {
         for (std::size_t a = 0; a < Dim; ++a) {
           Real force(0);
           for (std::size_t b = 0; b < Dim; ++b)
-            force -= particles_.volume[p] * stress(p, a, b) * seen.gradient[b];
+            force -=
+                particles_.volume[p] * (stress(p, a, b) + (a == b ? change : Real(0))) * seen.gradient[b];
           if (loading_.has_forces()) force += seen.weight * particles_.external_force[a][p];
           grid_.force[a][seen.node] += force;
         }
@@ -228,8 +237,21 @@ class PlainStepper {
   using Matrix = std::array<std::array<Real, Dim>, Dim>;
 
   void update_stresses() {
+    find_strains();
+    share_dilations();
+    for (Eigen::Index p = 0; p < particles_.count(); ++p) {
+      const auto& strain = strain_[static_cast<std::size_t>(p)];
+      for (std::size_t c = 0; scene_.sums_strain && c < components; ++c) particles_.strain[c][p] += strain[c];
+      std::visit(
+          [&](const auto& law) { update_stress(law, growth_[static_cast<std::size_t>(p)], strain, p); },
+          law_of<Dim, Real>(body_at(p).material));
+    }
+  }
+
+  void find_strains() {
     for_each_particle([&](Eigen::Index p, const Nodes& nodes) {
-      Matrix growth{};  // velocity gradient times time step
+      Matrix& growth = growth_[static_cast<std::size_t>(p)];
+      growth = {};
       for (const auto& seen : nodes) {
         for (std::size_t a = 0; a < Dim; ++a) {
           for (std::size_t b = 0; b < Dim; ++b)
@@ -240,9 +262,45 @@ class PlainStepper {
       strain = {};
       for (std::size_t a = 0; a < Dim; ++a) strain[a] = growth[a][a];
       if constexpr (Dim == 2) strain[3] = (growth[0][1] + growth[1][0]) / 2;
-      for (std::size_t c = 0; scene_.sums_strain && c < components; ++c) particles_.strain[c][p] += strain[c];
-      std::visit([&](const auto& law) { update_stress(law, growth, strain, p); }, law_at(p));
     });
+  }
+
+  /// Locking control: xx + yy becomes its mean over the cell, the difference of both stays.
+  void share_dilations() {
+    if constexpr (Dim == 2) {
+      const auto own = [&](Eigen::Index p) {
+        return strain_[static_cast<std::size_t>(p)][0] + strain_[static_cast<std::size_t>(p)][1];
+      };
+      const std::vector<Real> mean = averaged_over_cells(own);
+      for (Eigen::Index p = 0; p < particles_.count(); ++p) {
+        const Real change = mean[static_cast<std::size_t>(p)] - own(p);
+        for (std::size_t a = 0; a < Dim; ++a) strain_[static_cast<std::size_t>(p)][a] += change / 2;
+      }
+    }
+  }
+
+  /// [particle] The mean of a number over the particles in the same cell whose bodies have locking control,
+  /// weighted by volume; the number itself elsewhere.
+  template <class Own>
+  std::vector<Real> averaged_over_cells(Own&& own) const {
+    const auto cell = [&](Eigen::Index p) {
+      std::array<Real, Dim> lower;
+      for (std::size_t a = 0; a < Dim; ++a) lower[a] = std::floor(in_cells(p, a));
+      return lower;
+    };
+    const auto shares = [&](Eigen::Index p) { return body_at(p).locking_control != LockingControl::none; };
+    std::map<std::array<Real, Dim>, std::pair<Real, Real>> sums;
+    for (Eigen::Index p = 0; p < particles_.count(); ++p) {
+      if (!shares(p)) continue;
+      auto& [content, volume] = sums[cell(p)];
+      content += particles_.volume[p] * own(p);
+      volume += particles_.volume[p];
+    }
+    std::vector<Real> all;
+    for (Eigen::Index p = 0; p < particles_.count(); ++p) {
+      all.push_back(shares(p) ? sums.at(cell(p)).first / sums.at(cell(p)).second : own(p));
+    }
+    return all;
   }
 
   template <class Law>
@@ -366,10 +424,10 @@ class PlainStepper {
     for (Eigen::Index p = 0; p < particles_.count(); ++p) visit(p, nodes_[static_cast<std::size_t>(p)]);
   }
 
-  typename Laws<Dim, Real>::Any law_at(Eigen::Index p) const {
+  const Body& body_at(Eigen::Index p) const {
     std::size_t body = 0;
     while (p >= particles_.bodies[body].last) ++body;
-    return law_of<Dim, Real>(scene_.bodies[body].material);
+    return scene_.bodies[body];
   }
 
   /// Up to two units in the last place of `size`.
@@ -407,9 +465,10 @@ class PlainStepper {
   double seconds_;
   Real time_step_, empty_mass_;
   std::array<Field<Real>, Dim> start_;
-  std::vector<Nodes> nodes_;                        ///< [particle], of the step's start
-  std::vector<Vector<Dim, Real>> travel_;           ///< [particle] [m]
-  std::vector<SymmetricTensor<Dim, Real>> strain_;  ///< [particle] increments [-]
+  std::vector<Nodes> nodes_;                                    ///< [particle], of the step's start
+  std::vector<Vector<Dim, Real>> travel_;                       ///< [particle] [m]
+  std::vector<std::array<std::array<Real, Dim>, Dim>> growth_;  ///< [particle] velocity gradient * time step
+  std::vector<SymmetricTensor<Dim, Real>> strain_;              ///< [particle] increments [-]
   std::int64_t steps_ = 0, cell_crossings_ = 0;
   std::optional<Fault> fault_;
   bool is_disturbed_;

@@ -67,6 +67,7 @@ class RandomScene {
     draw_gravity(scene);
     scene.time_step = StableFraction{between(0.1, 0.4)};
     scene.termination = AtTime{1e9};
+    if (scene.dimension == 2) draw_locking_control(scene);
     return scene;
   }
 
@@ -152,6 +153,14 @@ class RandomScene {
                      [](const PerAxis& place, double time) {
                        return PerAxis{std::cos(9 * time) * place[1], std::sin(4 * place[0] + time)};
                      }};
+  }
+
+  /// Drawn last, so that all else of a scene is what it is without.
+  void draw_locking_control(Scene& scene) {
+    for (Body& body : scene.bodies) {
+      if (!std::holds_alternative<NeoHookean>(body.material) && chance(0.6))
+        body.locking_control = LockingControl::cell_average;
+    }
   }
 
   void draw_gravity(Scene& scene) {

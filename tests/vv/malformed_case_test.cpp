@@ -399,6 +399,11 @@ const std::vector<Malformed>& malformed_footings() {
       {R"([{"op": "replace", "path": "/scene/bodies/1/material/law", "value": "neo_hookian"}])",
        "/scene/bodies/1/material/law", "linear_elastic, zhang_elastic, mohr_coulomb, neo_hookean",
        "(did you mean \"neo_hookean\"?)", Schema::refuses},
+      {R"([{"op": "add", "path": "/scene/bodies/1/locking_control", "value": "b_bar"}])",
+       "/scene/bodies/1/locking_control", "one of none, cell_average", "\"b_bar\"", Schema::refuses},
+      {R"([{"op": "remove", "path": "/scene/bodies/1/initial_stress"}, {"op": "replace", "path": "/scene/bodies/1/material", "value": {"law": "neo_hookean", "youngs_modulus": "1 MPa", "poissons_ratio": 0.3}}, {"op": "add", "path": "/scene/bodies/1/locking_control", "value": "cell_average"}])",
+       "/scene/bodies/1/locking_control", "none with a law whose stress follows", "cell_average",
+       Schema::cannot_tell},
       {R"([{"op": "remove", "path": "/scene/bodies/1/initial_stress"}, {"op": "replace", "path": "/scene/bodies/1/material", "value": {"law": "neo_hookean", "youngs_modulus": "1 MPa"}}])",
        "/scene/bodies/1/material/poissons_ratio", "a number", "nothing: the key is missing", Schema::refuses},
 

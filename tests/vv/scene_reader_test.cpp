@@ -138,6 +138,24 @@ TEST(CaseFile, reads_what_bodies_start_from) {
   EXPECT_FALSE(plate.density_ramp);
 }
 
+TEST(CaseFile, reads_locking_control) {
+  Json text = footing_case();
+  EXPECT_EQ(parsed(text).runs.front().scene.bodies[0].locking_control, LockingControl::none);
+  text["scene"]["bodies"][0]["locking_control"] = "cell_average";
+  text["scene"]["bodies"][1]["locking_control"] = "none";
+  EXPECT_FALSE(schema_violation(text));
+  const Scene scene = parsed(text).runs.front().scene;
+  EXPECT_EQ(scene.bodies[0].locking_control, LockingControl::cell_average);
+  EXPECT_EQ(scene.bodies[1].locking_control, LockingControl::none);
+}
+
+TEST(CaseFile, refuses_locking_control_in_one_dimension) {
+  Json text = valid_case();
+  text["scene"]["bodies"][0]["locking_control"] = "cell_average";
+  expect_message(refusal_of(text.dump()), "column.json", "/scene/bodies/0/locking_control",
+                 "none in one dimension", "cell_average");
+}
+
 TEST(CaseFile, reads_rigid_bodies_and_surface_loads) {
   const Scene scene = parsed(footing_case()).runs.front().scene;
   EXPECT_TRUE(scene.sums_strain);
