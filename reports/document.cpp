@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 #include <string_view>
@@ -198,19 +199,47 @@ data gate_groups(const std::vector<PlacedGate>& gates, bool controls) {
   return groups;
 }
 
-/// "smooth 7/7", one entry a gate.
+/// "at most 0.5", or what a control has to violate: "not at most 0.5".
+std::string bound_of(const vv::GateResult& gate) {
+  const std::string comparison = gate.op == "<=" ? "at most " : gate.op == ">=" ? "at least " : gate.op + " ";
+  return (gate.must_fail ? "not " : "") + escaped(comparison) + number_markup(gate.threshold, 0);
+}
+
+/// "0.31 … 0.44", or the one value there is; "–" without any.
+std::string range_of(const std::vector<const vv::GateResult*>& results) {
+  double least = std::numeric_limits<double>::infinity(), most = -least;
+  for (const vv::GateResult* result : results) {
+    if (!std::isfinite(result->value)) continue;
+    least = std::min(least, result->value);
+    most = std::max(most, result->value);
+  }
+  if (least > most) return "–";
+  const std::string lower = number_markup(least), upper = number_markup(most);
+  return lower == upper ? lower : lower + " … " + upper;
+}
+
+/// One entry a gate: "smooth 7/7", what was measured, and what was asked for.
 data gate_tallies(const std::vector<PlacedGate>& gates) {
   std::vector<std::string> ids;
-  std::map<std::string, std::pair<int, int>> tally;
+  std::map<std::string, std::vector<const vv::GateResult*>> by_id;
   for (const PlacedGate& gate : gates) {
-    auto& [good, all] = tally[gate.result->id];
-    if (all == 0) ids.push_back(gate.result->id);
-    good += gate.result->good();
-    ++all;
+    std::vector<const vv::GateResult*>& results = by_id[gate.result->id];
+    if (results.empty()) ids.push_back(gate.result->id);
+    results.push_back(gate.result);
   }
   data tallies = list();
-  for (const std::string& id : ids)
-    tallies << object({{"id", id}, {"tally", fmt::format("{}/{}", tally[id].first, tally[id].second)}});
+  for (const std::string& id : ids) {
+    const std::vector<const vv::GateResult*>& results = by_id[id];
+    const auto good = std::count_if(results.begin(), results.end(), [](const auto* r) { return r->good(); });
+    const auto unmeasured =
+        std::count_if(results.begin(), results.end(), [](const auto* r) { return !std::isfinite(r->value); });
+    tallies << object({{"id", id},
+                       {"tally", fmt::format("{}/{}", good, results.size())},
+                       {"metric", name_of_metric(results.front()->metric) + statistic_of(*results.front())},
+                       {"range", range_of(results)},
+                       {"bound", bound_of(*results.front())},
+                       {"unmeasured", unmeasured > 0 ? std::to_string(unmeasured) : ""}});
+  }
   return tallies;
 }
 
@@ -439,11 +468,11 @@ std::string chip_of(const vv::Claim& claim, const std::vector<PlacedGate>& evide
   if (!std::all_of(evidence.begin(), evidence.end(), is_good)) return chip("fail", "IN DOUBT");
   switch (claim.finding) {
     case vv::Finding::seen:
-      return chip("pass", "SEEN");
+      return chip("pass", "holds");
     case vv::Finding::not_seen:
-      return chip("contrary", "NOT SEEN");
+      return chip("contrary", "not seen");
     case vv::Finding::depends:
-      return chip("contrary", "DEPENDS");
+      return chip("contrary", "holds in part");
   }
   return chip("fail", "UNKNOWN");
 }
