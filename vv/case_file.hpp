@@ -113,10 +113,15 @@ struct SnapshotRequest {
   friend bool operator==(const SnapshotRequest&, const SnapshotRequest&) = default;
 };
 
+/// The part of a two-dimensional scene that a figure shows.
+struct ViewRequest {
+  PerAxis lower{}, upper{};  ///< [m], lower below upper along both axes
+};
+
 /// A picture the report draws from the verdict of the case.
 struct FigureRequest {
   std::string id;
-  std::string kind;      ///< profiles, convergence, bars, history, curves, fields
+  std::string kind;      ///< profiles, convergence, bars, history, curves, fields, model
   std::string caption;
   std::string panels;    ///< JSON pointer of the swept parameter that separates panels; may be empty
   std::string series;    ///< JSON pointer of the swept parameter that separates curves; may be empty
@@ -126,6 +131,11 @@ struct FigureRequest {
   std::string over;                     ///< convergence: refined parameter
   std::vector<std::string> references;  ///< profiles, curves: names of reference solutions drawn beside the runs
   std::vector<Selector> where;
+  std::vector<int> snapshots = {};  ///< fields: indices into the case's snapshots; empty draws all
+  std::string unavailable = {};     ///< fields, curves: why there is no measurement to compare with; may be empty
+  std::optional<ViewRequest> view = std::nullopt;  ///< fields: the part to show; without one, all particles
+  bool marks = false;                              ///< curves: whether the bends that were found are marked
+  std::vector<double> stages = {};  ///< curves of pressure: settlements of note, from small to large [m]
 };
 
 /// One run of a sweep: its parameters, the resolved scene or element test, and its own text (for hashing).

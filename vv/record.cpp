@@ -284,18 +284,6 @@ std::vector<Snapshot> snapshots_from_json(const Json& json) {
   return snapshots;
 }
 
-std::string moment_of(const SnapshotRequest& request) {
-  switch (request.when) {
-    case SnapshotRequest::When::time:
-      return fmt::format("t = {:.6g} s", request.time);
-    case SnapshotRequest::When::passing:
-      return fmt::format("{} = {:.6g} mm", request.probe, request.value * 1e3);
-    case SnapshotRequest::When::end:
-      break;
-  }
-  return "end";
-}
-
 /// Whether the last of the values is the first to reach `value` or to lie beyond it, seen from the first.
 bool has_passed(const std::vector<double>& values, double value) {
   const double from = values.front() - value, to = values.back() - value;
@@ -625,6 +613,18 @@ Record record_scene(const Case& definition, const RunRequest& request, const Pul
 }
 
 }  // namespace
+
+std::string moment_of(const SnapshotRequest& request) {
+  switch (request.when) {
+    case SnapshotRequest::When::time:
+      return fmt::format("t = {:.6g} s", request.time);
+    case SnapshotRequest::When::passing:
+      return fmt::format("{} = {:.6g} mm", request.probe, request.value * 1e3);
+    case SnapshotRequest::When::end:
+      break;
+  }
+  return "end";
+}
 
 std::string ending_of(const Record& record) {
   if (!record.failure.empty()) return "run failed: " + record.failure;

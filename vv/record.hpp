@@ -41,6 +41,9 @@ struct Snapshot {
   ParticleFields fields;
 };
 
+/// The name of the moment that a request asks for, as `Snapshot::moment` has it.
+std::string moment_of(const SnapshotRequest& request);
+
 /// What a run cost: a noisy measure and a noise-free one.
 struct Cost {
   double wall_seconds = 0.0;

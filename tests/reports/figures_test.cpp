@@ -42,6 +42,11 @@ TEST(Names, AreThoseAPersonUses) {
   EXPECT_EQ(name_of_parameter("/scene/some_thing", "a<b"), "some thing a&lt;b");
   EXPECT_EQ(name_of_parameter("/scene/gravity/loading", {{"type", "ramp"}, {"duration", "1 s"}}),
             "ramped load over 1 s");
+  EXPECT_EQ(name_of_parameter("/scene/bodies/0/material/friction_angle", "20 deg"), "<i>φ</i> = 20°");
+  EXPECT_EQ(name_of_parameter("/scene/bodies/0/material/cohesion", "1 kPa"), "<i>c</i> = 1 kPa");
+  EXPECT_EQ(name_of_parameter("cause", "no embedment <1>"), "no embedment &lt;1&gt;");
+  EXPECT_EQ(name_of_run({{"cause", "thin layer"}, {"/scene/scheme", "mpm"}}), "thin layer, MPM");
+  EXPECT_EQ(name_of_reference("terzaghi"), "Terzaghi, surface");
   EXPECT_EQ(name_of_run({}), "the run");
   EXPECT_EQ(name_of_metric("hencky.settlement"), "error of settlement against Hencky");
   EXPECT_EQ(name_of_metric("cell_crossings"), "cell crossings");
@@ -231,6 +236,92 @@ TEST(Curves, ARunWithoutItsCurveIsNamed) {
   EXPECT_FALSE(notes_mention(figure.panels[0], "did not complete"));
 }
 
+TEST(Curves, StagesAreLinesAcrossThem) {
+  const vv::CaseVerdict verdict = support::demo_footing();
+  vv::FigureRequest staged = request(verdict, "settling");
+  staged.stages = {0.005, 0.02, 0.08};
+  const Panel panel = plot_of(verdict, staged).panels[0];
+  ASSERT_EQ(panel.levels.size(), 3U);
+  EXPECT_DOUBLE_EQ(panel.levels[1].value, 20.0);
+  EXPECT_EQ(panel.levels[0].label, "(i)");
+  EXPECT_EQ(panel.levels[2].label, "(iii)");
+  EXPECT_GE(panel.y.range.upper, 80.0) << "the axis reaches the last stage";
+}
+
+TEST(Curves, BendsAreMarkedWhereTheMetricsSay) {
+  vv::CaseVerdict verdict = support::demo_footing();
+  verdict.runs[2].metrics["load_curve.bend_settlement"] = 0.004;
+  verdict.runs[2].metrics["load_curve.bend_pressure"] = 3e4;
+  verdict.runs[1].metrics["load_curve.bend_settlement"] = 0.004;  // half of a place is none
+  vv::FigureRequest marked = request(verdict, "settling");
+  EXPECT_FALSE(curve(plot_of(verdict, marked).panels[0], "bend"));
+  marked.marks = true;
+  const Panel panel = plot_of(verdict, marked).panels[0];
+  ASSERT_TRUE(curve(panel, "bend"));
+  EXPECT_FALSE(curve(panel, "second bend"));
+  std::vector<const PlotCurve*> marks;
+  for (const PlotCurve& c : panel.curves)
+    if (c.label.empty()) marks.push_back(&c);
+  ASSERT_EQ(marks.size(), 1U);
+  EXPECT_EQ(marks[0]->x, std::vector<double>{30.0});
+  EXPECT_EQ(marks[0]->y, std::vector<double>{4.0});
+  EXPECT_EQ(marks[0]->look.color.blue, curve(panel, "cpGIMP")->look.color.blue);
+  EXPECT_FALSE(curve(plot_of(verdict, marked).panels[1], "bend")) << "no run of this panel has one";
+
+  // Of three phases, both bends of the three pieces; of one, none.
+  auto& metrics = verdict.runs[2].metrics;
+  metrics["load_curve.phases"] = 3.0;
+  metrics["load_curve.first_bend_settlement"] = 0.003;
+  metrics["load_curve.first_bend_pressure"] = 2e4;
+  metrics["load_curve.second_bend_settlement"] = 0.01;
+  metrics["load_curve.second_bend_pressure"] = 5e4;
+  const Panel bent_twice = plot_of(verdict, marked).panels[0];
+  ASSERT_TRUE(curve(bent_twice, "second bend"));
+  std::vector<double> settlements;
+  for (const PlotCurve& c : bent_twice.curves)
+    if (c.label.empty()) settlements.push_back(c.y.at(0));
+  EXPECT_EQ(settlements, (std::vector<double>{3.0, 10.0}));
+  metrics["load_curve.phases"] = 1.0;
+  EXPECT_FALSE(curve(plot_of(verdict, marked).panels[0], "bend"));
+}
+
+TEST(Curves, AMissingMeasurementIsNamedAndHasNoPoints) {
+  const vv::CaseVerdict verdict = support::demo_footing();
+  vv::FigureRequest compared = request(verdict, "settling");
+  compared.unavailable = "a picture <only>";
+  const Panel panel = plot_of(verdict, compared).panels[0];
+  const PlotCurve* entry = curve(panel, "measured: not available, a picture &lt;only&gt;");
+  ASSERT_TRUE(entry);
+  EXPECT_TRUE(entry->x.empty());
+  EXPECT_FALSE(entry->look.dash.empty());
+  compared.unavailable.clear();
+  for (int k = 0; k < 100; ++k) compared.unavailable += "not here ";
+  const Plot longer = plot_of(verdict, compared);
+  EXPECT_TRUE(curve(longer.panels[0], "measured: not available"));
+  EXPECT_TRUE(notes_mention(longer.panels[0], "Measured: not available (not here not"));
+  const Picture picture = draw(longer);
+  EXPECT_GE(picture.layout.legend.left, 0.0);
+  EXPECT_LE(picture.layout.legend.right, picture.canvas.width());
+}
+
+TEST(Curves, AReferenceThatDiffersFromRunToRunHasTheirColours) {
+  vv::CaseVerdict verdict = support::demo_footing();
+  const std::string name = "limit analysis, exact limit load";
+  const auto drawn = [&] {
+    std::vector<PlotCurve> curves = plot(verdict, "settling").panels[0].curves;
+    std::erase_if(curves, [&name](const PlotCurve& c) { return c.label != name; });
+    return curves;
+  };
+  ASSERT_EQ(drawn().size(), 1U);
+  EXPECT_EQ(drawn()[0].look.color.red, drawn()[0].look.color.blue) << "black, as all runs share it";
+  for (double& y : verdict.runs[2].curves[1].y) y *= 1.5;
+  const std::vector<PlotCurve> two = drawn();
+  ASSERT_EQ(two.size(), 2U);
+  EXPECT_EQ(two[0].look.color.red, two[0].look.color.blue) << "still shared by two runs";
+  const Plot figure = plot(verdict, "settling");
+  EXPECT_EQ(two[1].look.color.blue, curve(figure.panels[0], "cpGIMP")->look.color.blue);
+}
+
 TEST(Curves, StressPathsHaveStrainToTheRight) {
   vv::CaseVerdict verdict = support::demo_footing();
   verdict.runs[0].curves = {{"q", "run", {0.0, 0.02, 0.06}, {0.0, 5e4, 6e4}, "strain"}};
@@ -365,6 +456,101 @@ TEST(Fields, OneMomentFlowsAsItFitsBest) {
   EXPECT_EQ(figure.columns, 3);
   EXPECT_EQ(figure.panels[1].title, "1G, uGIMP");
   EXPECT_EQ(figure.heads, std::vector<std::string>{"footing = −5 mm"});
+}
+
+/// The demo's footing with the snapshots that its records hold asked for by name.
+vv::CaseVerdict footing_with_moments() {
+  vv::CaseVerdict verdict = support::demo_footing();
+  using When = vv::SnapshotRequest::When;
+  verdict.definition.snapshots = {
+      {When::time, 0.5, "", 0.0}, {When::passing, 0.0, "footing", -0.02}, {When::end, 0.0, "", 0.0}};
+  for (vv::RunVerdict& run : verdict.runs)
+    for (std::size_t k = 0; k < run.record.snapshots.size(); ++k)
+      run.record.snapshots[k].moment = vv::moment_of(verdict.definition.snapshots[k]);
+  return verdict;
+}
+
+TEST(Fields, OnlyTheSnapshotsChosenHaveColumns) {
+  const vv::CaseVerdict verdict = footing_with_moments();
+  vv::FigureRequest chosen = request(verdict, "shear");
+  chosen.snapshots = {2, 1};
+  const FieldPlot figure = field_plot_of(verdict, chosen);
+  ASSERT_EQ(figure.heads.size(), 2U);
+  EXPECT_EQ(figure.heads[0], "end");
+  EXPECT_EQ(figure.heads[1], "footing = −20 mm");
+  ASSERT_EQ(figure.panels.size(), 6U);
+  EXPECT_EQ(figure.panels[4].map->moment, "end");
+  EXPECT_NE(figure.panels[0].note.find("did not complete"), std::string::npos);
+  EXPECT_FALSE(any_mentions(figure.notes, "came about"));
+}
+
+TEST(Fields, AChosenSnapshotThatNeverCameIsCounted) {
+  vv::CaseVerdict verdict = footing_with_moments();
+  for (vv::RunVerdict& run : verdict.runs)
+    if (run.record.snapshots.size() > 1) run.record.snapshots.erase(run.record.snapshots.begin() + 1);
+  vv::FigureRequest chosen = request(verdict, "shear");
+  chosen.snapshots = {0, 1};
+  const FieldPlot figure = field_plot_of(verdict, chosen);
+  EXPECT_EQ(figure.panels.size(), 6U);
+  EXPECT_TRUE(any_mentions(figure.notes, "Of 2 snapshots asked for, 1 came about in no run."));
+}
+
+TEST(Fields, AMissingMeasurementHasARowOfHatchedFrames) {
+  const vv::CaseVerdict verdict = footing_with_moments();
+  vv::FigureRequest compared = request(verdict, "shear");
+  compared.where.push_back({support::demo::scheme_pointer, {"cpgimp"}});
+  compared.unavailable = "only a <picture>";
+  const FieldPlot figure = field_plot_of(verdict, compared);
+  ASSERT_EQ(figure.panels.size(), 6U);
+  EXPECT_EQ(figure.columns, 3);
+  EXPECT_EQ(figure.heads.size(), 3U);
+  EXPECT_EQ(figure.panels[3].title, "measured: not available");
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_EQ(figure.panels[i].hatched, i >= 3);
+    EXPECT_EQ(figure.panels[i].map.has_value(), i < 3);
+  }
+  EXPECT_EQ(figure.panels[5].note, "only a &lt;picture&gt;");
+  const Picture picture = draw(figure);
+  EXPECT_DOUBLE_EQ(picture.layout.panels[5].frame.width(), picture.layout.panels[2].frame.width());
+  EXPECT_DOUBLE_EQ(picture.layout.panels[5].frame.height(), picture.layout.panels[2].frame.height());
+  EXPECT_TRUE(picture.layout.panels[5].points.empty());
+}
+
+TEST(Fields, OfOneMomentTheMissingMeasurementIsOnePanelMore) {
+  const vv::CaseVerdict verdict = footing_with_moments();
+  vv::FigureRequest compared = request(verdict, "shear");
+  compared.snapshots = {0};
+  compared.unavailable = "none";
+  EXPECT_EQ(field_plot_of(verdict, compared).panels.size(), 4U);
+  compared.unavailable.clear();
+  EXPECT_EQ(field_plot_of(verdict, compared).panels.size(), 3U);
+}
+
+TEST(Fields, ShowThePartThatIsAskedFor) {
+  const vv::CaseVerdict verdict = support::demo_footing();
+  vv::FigureRequest zoomed = request(verdict, "shear");
+  zoomed.view = {{0.0, 0.5}, {0.8, 1.0}};
+  const FieldPlot figure = field_plot_of(verdict, zoomed);
+  EXPECT_EQ(figure.x.upper, 0.8);
+  EXPECT_EQ(figure.y.lower, 0.5);
+  EXPECT_EQ(figure.scale.range.upper, field_plot(verdict, "shear").scale.range.upper);
+  EXPECT_GT(draw(figure).layout.panels[8].outside, 900);
+}
+
+TEST(Model, HasAPanelForEveryRunSelected) {
+  vv::CaseVerdict verdict = support::demo_footing();
+  for (vv::RunRequest& run : verdict.definition.runs) run.scene.dimension = 2;
+  vv::FigureRequest model;
+  model.kind = "model";
+  model.where = {{support::demo::scheme_pointer, {"cpgimp"}}};
+  const ModelPlot figure = model_plot_of(verdict, model);
+  ASSERT_EQ(figure.panels.size(), 2U);
+  EXPECT_EQ(figure.panels[0].title, "1G");
+  EXPECT_EQ(figure.panels[1].title, "50G");
+  EXPECT_EQ(figure.panels[1].scene.bodies.at(0).name, "column");
+  model.where = {{"/scene/other", {1}}};
+  EXPECT_TRUE(any_mentions(model_plot_of(verdict, model).notes, "No run was selected"));
+  EXPECT_NO_THROW(picture_of(verdict, model));
 }
 
 TEST(Fields, SayWhyARunHasNoField) {
