@@ -59,8 +59,8 @@ Plot plot_of(const vv::CaseVerdict& verdict, const vv::FigureRequest& request);
 ///
 /// - A measurement that is not to be had has a row of hatched frames, or one frame beside the others.
 /// - The view is the request's, or covers all particles of the runs that completed; without any, of all.
-///   Should a few particles have flown so far that all others would shrink by a third or more, the outermost 0.1 % are left out and
-///   counted.
+///   Should a few particles have flown so far that all others would shrink by a third or more, the outermost
+///   0.1 % are left out and counted.
 /// - The colours cover all their values, or all but the outermost 0.5 % at an end beyond which a few lie
 ///   farther than half of the rest's span: then the scale says so and names the outermost value. Values of
 ///   both signs, the shear stress and the horizontal displacement have a scale with zero in its middle.

@@ -92,7 +92,8 @@ std::string slug_of(const std::pair<std::string, Json>& parameter) {
   const auto& [pointer, value] = parameter;
   std::string slug = pointer.substr(pointer.rfind('/') + 1) + "=" +
                      (value.is_string() ? value.get<std::string>() : value.dump());
-  std::erase_if(slug, [](char c) { return c == ' ' || c == '"' || c == '{' || c == '}'; });
+  const bool of_words = !pointer.starts_with('/');  // a variant's name; of a quantity the blank says nothing
+  std::erase_if(slug, [&](char c) { return (c == ' ' && !of_words) || c == '"' || c == '{' || c == '}'; });
   for (char& c : slug) {
     const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
     if (!plain && std::string_view("+-._=").find(c) == std::string_view::npos) c = '_';

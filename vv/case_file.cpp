@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "vv/case_schema.hpp"
+#include "vv/curves.hpp"
 #include "vv/field_map.hpp"
 #include "vv/json_reader.hpp"
 #include "vv/metamorphic.hpp"
@@ -21,13 +22,23 @@ namespace {
 
 bool is_element_case(const Case& read) { return read.text.contains("element"); }
 
+/// The curves of a verdict that have a name: of a scene the pressure under a footing over its
+/// settlement, of an element test its stresses and volume over the strain.
+std::vector<std::string> curve_catalogue(const Case& read) {
+  if (!is_element_case(read)) return {"pressure"};
+  return {"stress_xx", "stress_yy", "stress_zz", "stress_xy", "volumetric_strain"};
+}
+
 /// Whether a metric tells of every run, whatever it puts to the test.
 bool tells_of_any_run(const std::string& metric) {
   return contains({"completed", "steps", "non_finite_values", "bits_differ"}, metric);
 }
 
 std::string read_metric(const JsonPlace& place, const Case& read) {
-  const std::string name = place.one_of(names_of(metric_catalogue()));
+  std::vector<std::string> names = names_of(metric_catalogue());
+  for (const Reading& reading : read.readings) names.push_back(metric_of(reading).name);
+  const std::string name = place.one_of(names);
+  if (name.starts_with(reading_prefix)) return name;
   const Metric& metric = *std::find_if(metric_catalogue().begin(), metric_catalogue().end(),
                                        [&](const Metric& m) { return m.name == name; });
   if (!metric.reference.empty() && !contains(read.references, metric.reference)) {
@@ -67,6 +78,41 @@ std::vector<std::string> read_names(const JsonPlace& place, const std::vector<st
 }
 
 std::string optional_text(const JsonPlace& place) { return place.present() ? place.text() : ""; }
+
+// ---- readings
+// ---------------------------------------------------------------------------------------------------
+
+/// An abscissa of the case's curves: a settlement or, of an element test, a strain.
+double read_abscissa(const JsonPlace& place, const Case& read) {
+  return is_element_case(read) ? place.number() : place.quantity(QuantityKind::length);
+}
+
+/// The half-width of a mean over abscissae; 0 if absent, for none.
+double read_within(const JsonPlace& place, const Case& read) {
+  if (!place.present()) return 0.0;
+  const double within = read_abscissa(place, read);
+  if (!(within > 0.0)) place.refuse("a half-width above zero");
+  return within;
+}
+
+std::string read_curve_name(const JsonPlace& place, const Case& read) {
+  return place.one_of(curve_catalogue(read));
+}
+
+Reading read_reading(const JsonPlace& place, const Case& read) {
+  place.allow_only({"id", "title", "curve", "at", "within", "over"});
+  Reading reading;
+  reading.id = place["id"].own_identifier(ids_of(read.readings));
+  reading.title = place["title"].text();
+  reading.curve = read_curve_name(place["curve"], read);
+  reading.at = read_abscissa(place["at"], read);
+  reading.within = read_within(place["within"], read);
+  if (const JsonPlace over = place["over"]; over.present()) {
+    if (read.references.empty()) over.refuse("a reference solution of the case, which has none");
+    reading.over = over.one_of(read.references);
+  }
+  return reading;
+}
 
 // ---- gates
 // ------------------------------------------------------------------------------------------------------
@@ -138,13 +184,6 @@ std::vector<std::string> figure_keys(const std::string& kind) {
   if (kind == "fields") keys.insert(keys.end(), {"quantity", "snapshots", "unavailable", "view"});
   if (kind == "history") keys.push_back("quantity");
   return keys;
-}
-
-/// The curves of a verdict that can be drawn by their name: of a scene the pressure under a footing over its
-/// settlement, of an element test its stresses and volume over the strain.
-std::vector<std::string> curve_catalogue(const Case& read) {
-  if (!is_element_case(read)) return {"pressure"};
-  return {"stress_xx", "stress_yy", "stress_zz", "stress_xy", "volumetric_strain"};
 }
 
 /// Every run must have what is drawn of it in the plane.
@@ -244,7 +283,7 @@ FigureRequest read_figure(const JsonPlace& place, const Case& read) {
   if (figure.kind == "profiles") {
     figure.quantity = place["quantity"].one_of({"stress", "displacement", "stress_error"});
   } else if (figure.kind == "curves") {
-    figure.quantity = place["quantity"].one_of(curve_catalogue(read));
+    figure.quantity = read_curve_name(place["quantity"], read);
     figure.marks = place["marks"].flag_or(false);
     figure.stages = read_stages(place["stages"], figure.quantity);
   } else if (figure.kind == "history") {
@@ -345,7 +384,8 @@ void read_parts(Case& read) {
                                    "figure_of_paper", "description", "claims",
                                    "notes",           "quick",       "repeat_on_other_threads",
                                    "scene",           "element",     "sweep",
-                                   "references",      "gates",       "figures"};
+                                   "references",      "readings",    "gates",
+                                   "figures"};
   if (!place["element"].present()) keys.insert(keys.end(), {"metamorphoses", "probes", "snapshots"});
   place.allow_only(keys);
   optional_text(place["$schema"]);
@@ -359,6 +399,9 @@ void read_parts(Case& read) {
   read.probes = read_probes(place["probes"], read.runs);
   read.snapshots = read_snapshots(place["snapshots"], read.runs, read.probes);
   require_recorded(place["references"], read);
+  if (const JsonPlace readings = place["readings"]; readings.present()) {
+    for (const JsonPlace& reading : readings.elements()) read.readings.push_back(read_reading(reading, read));
+  }
   for (const JsonPlace& gate : place["gates"].some_elements()) read.gates.push_back(read_gate(gate, read));
   if (const JsonPlace claims = place["claims"]; claims.present()) {
     for (const JsonPlace& claim : claims.elements()) read.claims.push_back(read_claim(claim, read));

@@ -37,17 +37,17 @@ enum class Statistic {
   last_order,   ///< observed order of the last pair
 };
 
-/// A sweep value that restricts a gate or a figure to some runs: parameter (JSON pointer) and allowed values.
+/// A sweep value that restricts a gate or a figure to some runs: parameter and allowed values.
 struct Selector {
-  std::string parameter;
+  std::string parameter;  ///< as the axis of the sweep has it
   std::vector<Json> values;
 };
 
 struct Gate {
   std::string id;
-  std::string metric;  ///< a name in `metric_catalogue()` of vv/norms.hpp
+  std::string metric;  ///< a name in `metric_catalogue()` of vv/norms.hpp, or a reading
   Statistic statistic = Statistic::value;
-  std::string across;  ///< JSON pointer of the refined parameter, for the series statistics; else empty
+  std::string across;  ///< swept parameter that makes the series, for the series statistics; else empty
   std::vector<Selector> where;
   Comparison comparison = Comparison::at_most;
   double threshold = 0.0;
@@ -77,10 +77,19 @@ struct Follower {
   std::vector<Json> values;  ///< one for each value of the axis
 };
 
+/// A setting of the scene that has a name.
+struct Variant {
+  std::string name;                               ///< for a person; unlike the axis's other variants'
+  std::vector<std::pair<std::string, Json>> set;  ///< JSON pointer below /scene or /element, and what it becomes
+};
+
+/// What a sweep goes through: the values of a parameter, or variants of the scene.
 struct SweepAxis {
-  std::string parameter;  ///< JSON pointer into the case, below /scene or /element; it alone names the runs
-  std::vector<Json> values;
+  std::string parameter;    ///< JSON pointer into the case, below /scene or /element, which alone names the runs;
+                            ///< of variants the name of the axis, an identifier
+  std::vector<Json> values;  ///< of variants their names
   std::vector<Follower> with = {};
+  std::vector<Variant> variants = {};  ///< one for each value, or none
 };
 
 /// What a history probe looks at.
@@ -113,6 +122,16 @@ struct SnapshotRequest {
   friend bool operator==(const SnapshotRequest&, const SnapshotRequest&) = default;
 };
 
+/// A number read off a curve of each run: the metric `reading.<id>`.
+struct Reading {
+  std::string id;
+  std::string title;    ///< one line for a person, for example "pressure at 25 mm"
+  std::string curve;    ///< name of a curve of the runs
+  double at = 0.0;      ///< abscissa: a settlement [m], of an element test a strain [-]
+  double within = 0.0;  ///< half-width of the mean taken there; 0 interpolates between the samples
+  std::string over;  ///< a reference solution by whose curve, read alike, the number is divided; may be empty
+};
+
 /// The part of a two-dimensional scene that a figure shows.
 struct ViewRequest {
   PerAxis lower{}, upper{};  ///< [m], lower below upper along both axes
@@ -123,8 +142,8 @@ struct FigureRequest {
   std::string id;
   std::string kind;      ///< profiles, convergence, bars, history, curves, fields, model
   std::string caption;
-  std::string panels;    ///< JSON pointer of the swept parameter that separates panels; may be empty
-  std::string series;    ///< JSON pointer of the swept parameter that separates curves; may be empty
+  std::string panels;    ///< swept parameter that separates panels; may be empty
+  std::string series;    ///< swept parameter that separates curves; may be empty
   std::string quantity;  ///< profiles: stress, displacement or stress_error; history: probe id; curves: name of a
                          ///< curve; fields: a name in `field_catalogue()` of vv/field_map.hpp
   std::vector<std::string> metrics;     ///< convergence, bars
@@ -140,7 +159,7 @@ struct FigureRequest {
 
 /// One run of a sweep: its parameters, the resolved scene or element test, and its own text (for hashing).
 struct RunRequest {
-  std::vector<std::pair<std::string, Json>> parameters;  ///< swept JSON pointer and value, in sweep order
+  std::vector<std::pair<std::string, Json>> parameters;  ///< parameter and value of each axis, in sweep order
   Json scene_text;  ///< the case's /scene or /element, the parameters put in
   Scene scene;      ///< checked; without bodies for an element test
   std::shared_ptr<const reference::ManufacturedSolution> motion = nullptr;  ///< what drives the scene; may be null
@@ -162,6 +181,7 @@ struct Case {
   std::vector<RunRequest> runs;
   std::vector<HistoryProbe> probes;
   std::vector<SnapshotRequest> snapshots;
+  std::vector<Reading> readings;
   std::vector<Gate> gates;
   std::vector<FigureRequest> figures;
   std::filesystem::path file;

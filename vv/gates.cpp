@@ -7,6 +7,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "vv/curves.hpp"
+
 namespace mpm::vv {
 namespace {
 
@@ -82,7 +84,17 @@ std::vector<Group> groups_across(const Case& definition, const std::vector<std::
 
 // ---- measuring ----
 
-Measurement measure(const RunVerdict& run, const std::string& metric) {
+/// Why a run that completed does not have a metric that is absent.
+std::string why_absent(const Case& definition, const RunVerdict& run, const std::string& metric) {
+  for (const Reading& reading : definition.readings) {
+    if (metric != metric_of(reading).name) continue;
+    const std::string lack = read_off(reading, run.curves).lack;
+    if (!lack.empty()) return "the run completed but " + lack;
+  }
+  return fmt::format("the run completed but {} was not measured", metric);
+}
+
+Measurement measure(const Case& definition, const RunVerdict& run, const std::string& metric) {
   const auto found = run.metrics.find(metric);
   if (found != run.metrics.end() && std::isfinite(found->second))
     return {.value = found->second, .detail = {}};
@@ -90,8 +102,10 @@ Measurement measure(const RunVerdict& run, const std::string& metric) {
     return {
         .value = not_measured, .detail = ending_of(run.record), .ended_early = run.record.failure.empty()};
   }
-  const char* lack = found == run.metrics.end() ? "was not measured" : "is not a finite number";
-  return {.value = not_measured, .detail = fmt::format("the run completed but {} {}", metric, lack)};
+  if (found == run.metrics.end())
+    return {.value = not_measured, .detail = why_absent(definition, run, metric)};
+  return {.value = not_measured,
+          .detail = fmt::format("the run completed but {} is not a finite number", metric)};
 }
 
 double observed_order(double coarse_error, double fine_error, double coarse_size, double fine_size) {
@@ -121,7 +135,7 @@ double statistic_of(Statistic statistic, const std::vector<double>& values,
 }
 
 /// A statistic of a series; without a value it tells of the first run that lacks one.
-Measurement measure(const Gate& gate, const std::vector<const RunVerdict*>& levels,
+Measurement measure(const Case& definition, const Gate& gate, const std::vector<const RunVerdict*>& levels,
                     const std::vector<double>& cell_size) {
   if (levels.size() < 2) {
     return {.value = not_measured,
@@ -130,7 +144,7 @@ Measurement measure(const Gate& gate, const std::vector<const RunVerdict*>& leve
   std::vector<double> values;
   Measurement lacking;
   for (const RunVerdict* level : levels) {
-    const Measurement measurement = measure(*level, gate.metric);
+    const Measurement measurement = measure(definition, *level, gate.metric);
     values.push_back(measurement.value);
     if (std::isfinite(measurement.value)) continue;
     const bool first = lacking.detail.empty();
@@ -200,6 +214,10 @@ RunVerdict judged_run(const Case& definition, const RunRequest& request, Record 
       Judgement judgement = judge_run(definition, request, record);
       run.metrics = std::move(judgement.metrics);
       run.curves = std::move(judgement.curves);
+      for (const Reading& reading : definition.readings) {
+        const ReadOff value = read_off(reading, run.curves);
+        if (value.lack.empty()) run.metrics[metric_of(reading).name] = value.value;
+      }
       if (!record.repeat_digest.empty()) {
         run.metrics["bits_differ"] = record.digest == record.repeat_digest ? 0.0 : 1.0;
       }
@@ -249,7 +267,8 @@ class Bench {
     const std::vector<std::size_t> runs = selected_runs(definition(), gate.where);
     for (std::size_t run : runs) {
       RunVerdict& target = verdict_.runs[run];
-      target.gates.push_back(result_of(gate, scope_of(target.parameters), measure(target, gate.metric)));
+      target.gates.push_back(
+          result_of(gate, scope_of(target.parameters), measure(definition(), target, gate.metric)));
       if (gate.must_fail || gate.metric == completion_metric) covered_[run] = true;
     }
     return !runs.empty();
@@ -259,7 +278,7 @@ class Bench {
     const std::vector<Group> groups =
         groups_across(definition(), selected_runs(definition(), gate.where), gate.across);
     for (const Group& group : groups) {
-      const Measurement measurement = measure(gate, levels_of(group), cell_sizes_of(group));
+      const Measurement measurement = measure(definition(), gate, levels_of(group), cell_sizes_of(group));
       series_of(gate.across, group.fixed)
           .gates.push_back(result_of(gate, scope_across(group, gate), measurement));
       for (std::size_t run : group.runs) covered_[run] = covered_[run] || gate.must_fail;
@@ -353,7 +372,7 @@ class Bench {
       for (const auto& metric : level->metrics) series.metrics[metric.first];
     }
     for (auto& [metric, values] : series.metrics) {
-      for (const RunVerdict* level : levels) values.push_back(measure(*level, metric).value);
+      for (const RunVerdict* level : levels) values.push_back(measure(definition(), *level, metric).value);
       std::vector<double> orders = orders_of(values, series.cell_size);
       if (!orders.empty()) series.orders[metric] = std::move(orders);
     }

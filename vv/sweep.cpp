@@ -33,6 +33,11 @@ bool names_value(const std::string& parameter, const Subject& subject) {
   }
 }
 
+/// Whether one of two JSON pointers is the other or lies below it.
+bool overlap(const std::string& one, const std::string& other) {
+  return at_or_below(one, other) || at_or_below(other, one);
+}
+
 /// Refuses a `parameter` that the subject does not have or that one of the `taken` changes too. `found`
 /// describes it.
 void require_own_value(const std::string& pointer, const std::string& parameter, const std::string& found,
@@ -45,7 +50,7 @@ void require_own_value(const std::string& pointer, const std::string& parameter,
                   found);
   }
   for (const std::string& other : taken) {
-    if (at_or_below(parameter, other) || at_or_below(other, parameter)) {
+    if (overlap(parameter, other)) {
       throw Refusal(pointer, "a parameter that no other axis changes",
                     found + ", which " + other + " changes too");
     }
@@ -72,8 +77,68 @@ std::vector<Json> read_followers(const JsonPlace& place, std::size_t count) {
   return values;
 }
 
-/// Reads an axis; `taken` are the parameters that are changed so far, to which its own are added.
-SweepAxis read_sweep_axis(const JsonPlace& place, const Subject& subject, std::vector<std::string>& taken) {
+/// A text on one line, short enough for a legend, that no earlier variant has.
+std::string read_variant_name(const JsonPlace& place, const std::vector<Variant>& earlier) {
+  constexpr std::size_t longest = 60;
+  const std::string name = place.text();
+  const auto characters = static_cast<std::size_t>(std::count_if(
+      name.begin(), name.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
+  const bool broken =
+      std::any_of(name.begin(), name.end(), [](char c) { return static_cast<unsigned char>(c) < ' '; });
+  if (characters > longest || broken) place.refuse("a name of at most 60 characters on one line");
+  if (contains(names_of(earlier), name)) {
+    place.refuse("a name that no other variant of the axis has", ", which an earlier one has");
+  }
+  return name;
+}
+
+/// Reads a variant; `taken` are the parameters that earlier axes change.
+Variant read_variant(const JsonPlace& place, const Subject& subject, const std::vector<std::string>& taken,
+                     const std::vector<Variant>& earlier) {
+  place.allow_only({"name", "set"});
+  Variant variant{read_variant_name(place["name"], earlier), {}};
+  for (const auto& [parameter, value] : place["set"].members()) {
+    const std::string found = describe(Json(parameter));
+    require_own_value(value.pointer(), parameter, found, subject, taken);
+    for (const auto& [other, own] : variant.set) {
+      if (overlap(parameter, other)) {
+        throw Refusal(value.pointer(), "a parameter that the variant sets once", found + " beside " + other);
+      }
+    }
+    variant.set.emplace_back(parameter, value.value());
+  }
+  for (const Variant& other : earlier) {
+    if (std::is_permutation(variant.set.begin(), variant.set.end(), other.set.begin(), other.set.end()))
+      place["set"].refuse("what no other variant of the axis sets", ", as \"" + other.name + "\" has it");
+  }
+  return variant;
+}
+
+/// Reads an axis of variants, which two may change the same parameter since no run has both.
+SweepAxis read_variants(const JsonPlace& place, const Subject& subject, const std::vector<SweepAxis>& earlier,
+                        std::vector<std::string>& taken) {
+  place.allow_only({"name", "variants"});
+  SweepAxis axis;
+  axis.parameter = place["name"].identifier();
+  if (std::any_of(earlier.begin(), earlier.end(),
+                  [&](const SweepAxis& other) { return other.parameter == axis.parameter; })) {
+    place["name"].refuse("a name that no other axis has", ", which an earlier one has");
+  }
+  for (const JsonPlace& variant : place["variants"].some_elements()) {
+    axis.variants.push_back(read_variant(variant, subject, taken, axis.variants));
+    axis.values.emplace_back(axis.variants.back().name);
+  }
+  for (const Variant& variant : axis.variants) {
+    for (const auto& [parameter, value] : variant.set) taken.push_back(parameter);
+  }
+  return axis;
+}
+
+/// Reads an axis; `taken` are the parameters that `earlier` axes change, to which its own are added.
+SweepAxis read_sweep_axis(const JsonPlace& place, const Subject& subject,
+                          const std::vector<SweepAxis>& earlier, std::vector<std::string>& taken) {
+  if (place["name"].present() || place["variants"].present())
+    return read_variants(place, subject, earlier, taken);
   place.allow_only({"parameter", "with", "values"});
   SweepAxis axis;
   axis.parameter = place["parameter"].text();
@@ -97,24 +162,45 @@ const Json& chosen_value(const std::vector<SweepAxis>& sweep, const Choice& choi
 
 std::string axis_pointer(std::size_t axis) { return "/sweep/" + std::to_string(axis); }
 
-std::string chosen_pointer(const Choice& choice, std::size_t axis) {
-  return axis_pointer(axis) + "/values/" + std::to_string(choice[axis]);
+std::string chosen_pointer(const std::vector<SweepAxis>& sweep, const Choice& choice, std::size_t axis) {
+  return axis_pointer(axis) + (sweep[axis].variants.empty() ? "/values/" : "/variants/") +
+         std::to_string(choice[axis]);
 }
 
 /// Puts the value with index `chosen` of an axis into the subject, and what follows along.
 void put(const SweepAxis& axis, std::size_t chosen, Subject& subject) {
+  if (!axis.variants.empty()) {
+    for (const auto& [parameter, value] : axis.variants[chosen].set)
+      subject.text.at(below(subject, parameter)) = value;
+    return;
+  }
   subject.text.at(below(subject, axis.parameter)) = axis.values[chosen];
   for (const Follower& follower : axis.with) {
     subject.text.at(below(subject, follower.parameter)) = follower.values[chosen];
   }
 }
 
+/// Where in the case file the value stands that a variant puts at or above `pointer`; `variant_pointer` is its
+/// own place.
+std::string source_in_variant(const std::string& pointer, const Variant& variant,
+                              const std::string& variant_pointer) {
+  for (const auto& [parameter, value] : variant.set) {
+    if (!at_or_below(pointer, parameter)) continue;
+    return (Json::json_pointer(variant_pointer + "/set") / parameter).to_string() +
+           pointer.substr(parameter.size());
+  }
+  return "";
+}
+
 /// Where in the case file the value stands that an axis puts at or above `pointer`, with the part of
 /// `pointer` below it; empty if it puts none there.
 std::string source_of(const std::string& pointer, const std::vector<SweepAxis>& sweep, const Choice& choice,
                       std::size_t axis) {
+  if (!sweep[axis].variants.empty()) {
+    return source_in_variant(pointer, sweep[axis].variants[choice[axis]], chosen_pointer(sweep, choice, axis));
+  }
   if (const std::string& parameter = sweep[axis].parameter; at_or_below(pointer, parameter))
-    return chosen_pointer(choice, axis) + pointer.substr(parameter.size());
+    return chosen_pointer(sweep, choice, axis) + pointer.substr(parameter.size());
   for (const Follower& follower : sweep[axis].with) {
     if (!at_or_below(pointer, follower.parameter)) continue;
     const Json::json_pointer values = Json::json_pointer(axis_pointer(axis) + "/with") / follower.parameter;
@@ -146,8 +232,9 @@ std::size_t culprit(const Subject& subject, const std::vector<SweepAxis>& sweep,
     if (!source.empty()) throw Refusal(source, refusal.expected(), refusal.found());
   }
   const std::size_t axis = culprit(subject, sweep, choice);
-  throw Refusal(chosen_pointer(choice, axis),
-                "a value with which " + refusal.pointer() + " is " + refusal.expected(),
+  const std::string chosen = sweep[axis].variants.empty() ? "a value" : "a variant";
+  throw Refusal(chosen_pointer(sweep, choice, axis),
+                chosen + " with which " + refusal.pointer() + " is " + refusal.expected(),
                 describe(chosen_value(sweep, choice, axis)) + ", which makes it " + refusal.found());
 }
 
@@ -214,7 +301,7 @@ std::vector<SweepAxis> read_sweep(const JsonPlace& place, const Subject& subject
   double runs = 1.0;
   std::vector<std::string> taken;
   for (const JsonPlace& axis : place.some_elements()) {
-    sweep.push_back(read_sweep_axis(axis, subject, taken));
+    sweep.push_back(read_sweep_axis(axis, subject, sweep, taken));
     runs *= static_cast<double>(sweep.back().values.size());
     if (runs > most_runs) place.refuse("at most 100000 runs");
   }
@@ -256,9 +343,9 @@ std::vector<Json> selected_values(const SweepAxis& axis, const std::vector<Selec
 }
 
 bool refines(const SweepAxis& axis, const std::vector<Json>& values, const Subject& scene) {
-  Subject changed = scene;
   double coarser = std::numeric_limits<double>::infinity();
   for (const Json& value : values) {
+    Subject changed = scene;
     const auto chosen = std::find(axis.values.begin(), axis.values.end(), value) - axis.values.begin();
     put(axis, static_cast<std::size_t>(chosen), changed);
     const double cell_size = read_cell_size(changed);

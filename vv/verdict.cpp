@@ -148,6 +148,7 @@ std::string text_of(const Json& value) {
 
 std::string scope_of(const std::string& pointer, const Json& value) {
   const std::string text = text_of(value);
+  if (!pointer.starts_with('/')) return text;  // a variant has a name of its own
   if (pointer == "/scene/gravity/level") return text + "G";
   if (pointer == "/scene/grid/cell_size") return "h " + text;
   if (pointer.ends_with("/youngs_modulus")) return "E " + text;

@@ -50,7 +50,7 @@ struct RunVerdict {
 
 /// A metric over a refinement, with observed orders between neighbours.
 struct SeriesVerdict {
-  std::string across;                                  ///< JSON pointer of the refined parameter
+  std::string across;                                  ///< the swept parameter
   std::vector<std::pair<std::string, Json>> fixed;     ///< the other parameters of the group
   std::vector<double> cell_size;                       ///< [m], from coarse to fine, one entry per run
   std::map<std::string, std::vector<double>> metrics;  ///< NaN where a run has none
@@ -64,7 +64,7 @@ enum class CaseStatus { pass, fail, not_run };
 const char* name_of(GateStatus status);
 const char* name_of(CaseStatus status);
 
-/// Swept values for a person: "50G, cpgimp, h 0.02 m"; "the run" when nothing is swept.
+/// Swept values for a person: "50G, cpgimp, h 0.02 m", variants by their names; "the run" when nothing is swept.
 std::string scope_of(const std::vector<std::pair<std::string, Json>>& parameters);
 
 /// Room between value and threshold relative to the threshold [-], positive on the side where the comparison

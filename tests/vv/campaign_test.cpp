@@ -323,6 +323,8 @@ TEST(RecordFile, TellsTheSweptValuesAndIsUnique) {
   EXPECT_EQ(record_file("out", definition, 0), "out/records/some/level=50,cell_size=0.02m.json");
   EXPECT_EQ(record_file("out", definition, 0, true), "out/records/some/level=50,cell_size=0.02m.repeat.json");
   EXPECT_EQ(record_file("out", definition, 1).parent_path(), "out/records/some");
+  definition.runs[0].parameters = {{"setting", "half the rate, 50"}, {"/scene/gravity/level", 50}};
+  EXPECT_EQ(record_file("out", definition, 0), "out/records/some/setting=half_the_rate__50,level=50.json");
   EXPECT_NE(record_file("out", definition, 2), record_file("out", definition, 3));
 }
 

@@ -232,6 +232,130 @@ TEST(CaseFile, sweeps_over_several_places_at_once) {
   }
 }
 
+/// The column with a first axis of variants, then the schemes.
+Json column_in_variants() {
+  Json text = valid_case();
+  text["sweep"][0] = Json::parse(R"({ "name": "setting", "variants": [
+      { "name": "as written", "set": {} },
+      { "name": "fine", "set": { "/scene/grid/cell_size": "0.05 m", "/scene/time_step": { "seconds": "1e-5 s" } } },
+      { "name": "finest, 20G", "set": { "/scene/gravity/level": 20, "/scene/grid/cell_size": "0.025 m" } }] })");
+  text["gates"][0]["where"] =
+      Json::parse(R"({ "/scene/scheme": ["cpgimp"], "setting": ["as written", "finest, 20G"] })");
+  text["gates"][1]["across"] = text["gates"][2]["across"] = "setting";
+  text["figures"][0]["panels"] = text["figures"][1]["over"] = "setting";
+  return text;
+}
+
+TEST(CaseFile, sweeps_over_variants_that_have_names) {
+  const Case read = parsed(column_in_variants());
+  ASSERT_EQ(read.sweep.size(), 2u);
+  EXPECT_EQ(read.sweep[0].parameter, "setting");
+  EXPECT_EQ(read.sweep[0].values, (std::vector<Json>{"as written", "fine", "finest, 20G"}));
+  ASSERT_EQ(read.sweep[0].variants.size(), 3u);
+  EXPECT_TRUE(read.sweep[0].variants[0].set.empty());
+  EXPECT_EQ(read.sweep[0].variants[2].set[1].first, "/scene/grid/cell_size");
+  EXPECT_TRUE(read.sweep[1].variants.empty());
+
+  ASSERT_EQ(read.runs.size(), 6u);
+  const std::vector<double> cell_sizes = {0.1, 0.05, 0.025}, levels = {10, 10, 20};
+  for (std::size_t i = 0; i < read.runs.size(); ++i) {
+    const RunRequest& run = read.runs[i];
+    EXPECT_EQ(run.scene.cell_size, cell_sizes[i / 2]);
+    EXPECT_EQ(run.scene.gravity.level, levels[i / 2]) << "what a variant does not set stays as written";
+    EXPECT_EQ(std::holds_alternative<StableFraction>(run.scene.time_step), i / 2 != 1);
+    EXPECT_EQ(run.scene.scheme, i % 2 == 0 ? Scheme::mpm : Scheme::cpgimp);
+    ASSERT_EQ(run.parameters.size(), 2u) << "only the axes name the run";
+    EXPECT_EQ(run.parameters[0], (std::pair<std::string, Json>{"setting", read.sweep[0].values[i / 2]}));
+  }
+  EXPECT_EQ(read.runs[2].scene_text["time_step"], Json::parse(R"({ "seconds": "1e-5 s" })"));
+
+  EXPECT_EQ(read.gates[0].where[1].parameter, "setting");
+  EXPECT_EQ(read.gates[2].across, "setting");
+  EXPECT_EQ(read.figures[0].panels, "setting");
+  EXPECT_EQ(read.figures[1].over, "setting");
+}
+
+TEST(CaseFile, refines_by_what_a_variant_and_the_scene_as_written_say) {
+  Json text = column_in_variants();
+  // Without a cell size of its own the last variant has that of the scene as written, which is not smaller.
+  text["sweep"][0]["variants"][2]["set"].erase("/scene/grid/cell_size");
+  expect_message(refusal_of(text.dump()), "column.json", "/gates/2/across",
+                 "makes the cell size smaller from each value to the next", "\"setting\"");
+}
+
+TEST(CaseFile, says_which_variant_is_wrong_and_where) {
+  struct Wrong {
+    const char *patch, *pointer, *expected, *found;
+    bool schema_refuses;
+  };
+  const std::vector<Wrong> all = {
+      {R"([{"op": "remove", "path": "/sweep/0/name"}])", "/sweep/0/name", "a name: a letter",
+       "nothing: the key is missing", true},
+      {R"([{"op": "replace", "path": "/sweep/0/name", "value": "/scene/scheme"}])", "/sweep/0/name",
+       "a name: a letter", "\"/scene/scheme\"", true},
+      {R"([{"op": "remove", "path": "/sweep/0/variants"}])", "/sweep/0/variants",
+       "an array of at least one value", "nothing: the key is missing", true},
+      {R"([{"op": "add", "path": "/sweep/0/values", "value": [1, 2]}])", "/sweep/0/values",
+       "one of the keys name, variants", "\"values\"", true},
+      {R"([{"op": "add", "path": "/sweep/1/variants", "value": []}])", "/sweep/1/parameter",
+       "one of the keys name, variants", "\"parameter\"", true},
+      {R"([{"op": "add", "path": "/sweep/2", "value": {"name": "setting", "variants": [{"name": "a", "set": {}}]}}])",
+       "/sweep/2/name", "a name that no other axis has", "\"setting\", which an earlier one has", false},
+      {R"([{"op": "replace", "path": "/sweep/0/variants/1/name", "value": "as written"}])",
+       "/sweep/0/variants/1/name", "a name that no other variant of the axis has", "\"as written\", which", false},
+      {R"([{"op": "replace", "path": "/sweep/0/variants/1/name",
+            "value": "a name that is so long that no legend has room for it all, ever"}])",
+       "/sweep/0/variants/1/name", "at most 60 characters on one line", "\"a name that is so long", true},
+      {R"([{"op": "replace", "path": "/sweep/0/variants/1/name", "value": "two\nlines"}])",
+       "/sweep/0/variants/1/name", "at most 60 characters on one line", "\"two", false},
+      {R"([{"op": "remove", "path": "/sweep/0/variants/0/set"}])", "/sweep/0/variants/0/set", "an object",
+       "nothing: the key is missing", true},
+      {R"([{"op": "replace", "path": "/sweep/0/variants/1/set", "value": {}}])", "/sweep/0/variants/1/set",
+       "what no other variant of the axis sets", "as \"as written\" has it", false},
+      {R"([{"op": "add", "path": "/sweep/0/variants/0/settings", "value": {}}])",
+       "/sweep/0/variants/0/settings", "one of the keys name, set", "\"settings\"", true},
+      {R"([{"op": "add", "path": "/sweep/0/variants/0/set/~1scene~1dampin", "value": 0}])",
+       "/sweep/0/variants/0/set/~1scene~1dampin", "a JSON pointer to a value the scene has",
+       "\"/scene/dampin\"", false},
+      {R"([{"op": "add", "path": "/sweep/0/variants/0/set/~1title", "value": "a"}])",
+       "/sweep/0/variants/0/set/~1title", "a JSON pointer to a value the scene has", "\"/title\"", true},
+      {R"([{"op": "add", "path": "/sweep/0/variants/2/set/~1scene~1grid", "value": {}}])",
+       "/sweep/0/variants/2/set/~1scene~1grid", "a parameter that the variant sets once",
+       "\"/scene/grid\" beside /scene/grid/cell_size", false},
+      {R"([{"op": "add", "path": "/sweep/0/variants/1/set/~1scene~1time_step~1seconds", "value": "1 s"}])",
+       "/sweep/0/variants/1/set/~1scene~1time_step~1seconds", "a JSON pointer to a value the scene has", "", false},
+      {R"([{"op": "add", "path": "/sweep/0/variants/1/set/~1scene~1time_step~1stable_fraction", "value": 0.1}])",
+       "/sweep/0/variants/1/set/~1scene~1time_step~1stable_fraction", "a parameter that the variant sets once",
+       "beside /scene/time_step", false},
+      {R"([{"op": "add", "path": "/sweep/0/variants/1/set/~1scene~1scheme", "value": "mpm"}])",
+       "/sweep/1/parameter", "a parameter that no other axis changes", "which /scene/scheme changes too", false},
+      {R"([{"op": "add", "path": "/sweep/2", "value": {"name": "other", "variants": [
+            {"name": "a", "set": {}}, {"name": "b", "set": {"/scene/time_step/stable_fraction": 0.1}}]}}])",
+       "/sweep/2/variants/1/set/~1scene~1time_step~1stable_fraction", "a parameter that no other axis changes",
+       "which /scene/time_step changes too", false},
+      {R"([{"op": "replace", "path": "/sweep/0/variants/2/set/~1scene~1gravity~1level", "value": "20G"}])",
+       "/sweep/0/variants/2/set/~1scene~1gravity~1level", "a number", "\"20G\"", false},
+      {R"([{"op": "replace", "path": "/sweep/0/variants/1/set/~1scene~1time_step/seconds", "value": "1e-5 m"}])",
+       "/sweep/0/variants/1/set/~1scene~1time_step/seconds", "a time such as", "a length", false},
+      {R"([{"op": "replace", "path": "/sweep/0/variants/1/set/~1scene~1grid~1cell_size", "value": "0.07 m"}])",
+       "/sweep/0/variants/1", "a variant with which /scene/grid/upper/0 is a whole number of cells of 0.07 m",
+       "\"fine\", which makes it 1.2 m", false},
+      {R"([{"op": "replace", "path": "/gates/0/where/setting/0", "value": "as writen"}])",
+       "/gates/0/where/setting/0", "a value this parameter is swept over (\"as written\", \"fine\"",
+       "\"as writen\"", false},
+      {R"([{"op": "replace", "path": "/gates/1/across", "value": "settings"}])", "/gates/1/across",
+       "a swept parameter (setting, /scene/scheme)", "\"settings\"", false},
+      {R"([{"op": "replace", "path": "/gates/1/across", "value": "two words"}])", "/gates/1/across",
+       "a swept parameter (setting, /scene/scheme)", "\"two words\"", true},
+  };
+  for (const Wrong& wrong : all) {
+    SCOPED_TRACE(wrong.patch);
+    const Json text = column_in_variants().patch(Json::parse(wrong.patch));
+    expect_message(refusal_of(text.dump()), "column.json", wrong.pointer, wrong.expected, wrong.found);
+    EXPECT_EQ(schema_violation(text).has_value(), wrong.schema_refuses);
+  }
+}
+
 // ---- what must be recorded for a reference solution
 // ---------------------------------------------------------------
 
@@ -262,6 +386,75 @@ Json elastic_strip_case() {
       {"law", "linear_elastic"}, {"youngs_modulus", "1 MPa"}, {"poissons_ratio", 0.3}};
   text["references"] = {"elastic_strip"};
   return text;
+}
+
+/// The strip with a reading at each of two depths, and a gate and a figure on them.
+Json strip_with_readings() {
+  Json text = strip_case();
+  text["readings"] = Json::parse(R"([
+    { "id": "early", "title": "pressure at 0.5 mm", "curve": "pressure", "at": "0.5 mm" },
+    { "id": "late", "title": "pressure at 1.5 mm", "curve": "pressure", "at": "1.5 mm", "within": "0.1 mm",
+      "over": "limit_analysis" }])");
+  text["gates"].push_back(Json::parse(R"({ "id": "late", "metric": "reading.late", "at_most": 1.1,
+    "basis": "theory", "reason": "Collapse." })"));
+  text["figures"] = Json::parse(R"([{ "id": "readings", "kind": "bars", "caption": "Pressures.",
+    "metrics": ["reading.early", "reading.late"] }])");
+  return text;
+}
+
+TEST(CaseFile, reads_readings) {
+  const Case read = parsed(strip_with_readings());
+  ASSERT_EQ(read.readings.size(), 2u);
+  EXPECT_EQ(read.readings[0].id, "early");
+  EXPECT_EQ(read.readings[0].title, "pressure at 0.5 mm");
+  EXPECT_EQ(read.readings[0].curve, "pressure");
+  EXPECT_EQ(read.readings[0].at, 0.0005);
+  EXPECT_EQ(read.readings[0].within, 0.0);
+  EXPECT_EQ(read.readings[0].over, "");
+  EXPECT_EQ(read.readings[1].within, 0.0001);
+  EXPECT_EQ(read.readings[1].over, "limit_analysis");
+  EXPECT_EQ(read.gates.back().metric, "reading.late");
+  EXPECT_EQ(read.figures[0].metrics, (std::vector<std::string>{"reading.early", "reading.late"}));
+  EXPECT_TRUE(parsed(strip_case()).readings.empty());
+}
+
+TEST(CaseFile, says_which_reading_is_wrong_and_where) {
+  struct Wrong {
+    const char *patch, *pointer, *expected, *found;
+    bool schema_refuses;
+  };
+  const std::vector<Wrong> all = {
+      {R"([{"op": "remove", "path": "/readings/0/title"}])", "/readings/0/title", "a text", "nothing", true},
+      {R"([{"op": "replace", "path": "/readings/1/id", "value": "early"}])", "/readings/1/id",
+       "an id of its own", "\"early\"", false},
+      {R"([{"op": "replace", "path": "/readings/0/curve", "value": "presure"}])", "/readings/0/curve",
+       "pressure", "(did you mean \"pressure\"?)", true},
+      {R"([{"op": "replace", "path": "/readings/0/curve", "value": "stress_xx"}])", "/readings/0/curve",
+       "pressure", "\"stress_xx\"", false},
+      {R"([{"op": "replace", "path": "/readings/0/at", "value": "1 s"}])", "/readings/0/at",
+       "a length such as", "\"1 s\", a time", true},
+      {R"([{"op": "replace", "path": "/readings/0/at", "value": 0.025}])", "/readings/0/at",
+       "a length such as", "0.025, a number without a unit", false},
+      {R"([{"op": "remove", "path": "/readings/0/at"}])", "/readings/0/at", "a length such as", "nothing",
+       true},
+      {R"([{"op": "replace", "path": "/readings/1/within", "value": "0 mm"}])", "/readings/1/within",
+       "a half-width above zero", "\"0 mm\"", true},
+      {R"([{"op": "replace", "path": "/readings/1/over", "value": "elastic_strip"}])", "/readings/1/over",
+       "limit_analysis", "\"elastic_strip\"", false},
+      {R"([{"op": "replace", "path": "/references", "value": []}])", "/readings/1/over",
+       "a reference solution of the case, which has none", "\"limit_analysis\"", false},
+      {R"([{"op": "add", "path": "/readings/0/around", "value": "1 mm"}])", "/readings/0/around",
+       "one of the keys id, title, curve, at, within, over", "\"around\"", true},
+      {R"([{"op": "replace", "path": "/gates/1/metric", "value": "reading.lat"}])", "/gates/1/metric",
+       "reading.early, reading.late", "(did you mean \"reading.late\"?)", false},
+      {R"([{"op": "remove", "path": "/readings"}])", "/gates/1/metric", "one of ", "\"reading.late\"", false},
+  };
+  for (const Wrong& wrong : all) {
+    SCOPED_TRACE(wrong.patch);
+    const Json text = strip_with_readings().patch(Json::parse(wrong.patch));
+    expect_message(refusal_of(text.dump()), "column.json", wrong.pointer, wrong.expected, wrong.found);
+    EXPECT_EQ(schema_violation(text).has_value(), wrong.schema_refuses);
+  }
 }
 
 TEST(CaseFile, needs_the_load_on_the_strip_for_what_judges_footings) {

@@ -135,6 +135,26 @@ TEST(Documentation, PartsOfTheExampleAreThoseOfTheWhole) {
   EXPECT_GE(parts, 5);
 }
 
+TEST(Documentation, VariantsFitTheExample) {
+  Json whole = Json::parse(example());
+  whole.erase("figures");
+  whole["sweep"] = Json::array({Json::parse(marked_block("axis for two_layers"))});
+  const Case definition = parse_case(whole.dump(), "two_layers.json");
+  ASSERT_EQ(definition.runs.size(), 3u);
+  EXPECT_EQ(scope_of(definition.runs[1].parameters), "half the speed");
+  EXPECT_EQ(definition.runs[1].scene.rigid_bodies[0].velocity[1], -0.05);
+}
+
+TEST(Documentation, ReadingsFitAFooting) {
+  std::ifstream stream(root / "vv" / "cases" / "prandtl.json", std::ios::binary);
+  Json footing = Json::parse(std::string(std::istreambuf_iterator<char>(stream), {}));
+  footing["readings"] = Json::parse(marked_block("readings of a footing"));
+  footing["gates"][0]["metric"] = "reading.pressure_25";
+  const Case definition = parse_case(footing.dump(), "prandtl.json");
+  EXPECT_EQ(definition.readings.at(0).at, 0.025);
+  EXPECT_EQ(definition.readings.at(0).over, "limit_analysis");
+}
+
 TEST(Documentation, QuotesTheMessageOfABadValue) {
   std::string text = example();
   const std::string good = "\"cohesion\": \"10 kPa\"";

@@ -14,6 +14,7 @@
 
 #include "vv/case_file.hpp"
 #include "vv/case_schema.hpp"
+#include "vv/gates.hpp"
 #include "vv/norms.hpp"
 #include "vv/record.hpp"
 
@@ -74,6 +75,20 @@ TEST(ElementCase, IsReadWithAllItSays) {
   Json single = valid_case();
   single["element"]["precision"] = "float";
   EXPECT_EQ(read(single).runs[0].element->precision, Precision::float32);
+}
+
+TEST(ElementCase, IsReadOffItsCurves) {
+  Json text = patched(R"([{"op": "add", "path": "/readings", "value": [
+      {"id": "half_way", "title": "Half way", "curve": "stress_xy", "at": 0.005, "over": "closed_form"},
+      {"id": "end", "title": "At the end", "curve": "stress_xx", "at": 0.01}]},
+    {"op": "remove", "path": "/sweep"}])");
+  const Case soil = read(text);
+  EXPECT_EQ(soil.readings.at(0).at, 0.005);
+  const CaseVerdict verdict = judge_case(soil, {simulate(soil, soil.runs[0])});
+  EXPECT_NEAR(verdict.runs[0].metrics.at("reading.half_way"), 1.0, 1e-9);
+  EXPECT_LT(verdict.runs[0].metrics.at("reading.end"), 0.0);
+  text["readings"][0]["at"] = "5 mm";
+  EXPECT_NE(refusal_of(text).find("/readings/0/at: expected a number, found"), std::string::npos);
 }
 
 TEST(ElementCase, IsRefusedWhereItIsWrong) {

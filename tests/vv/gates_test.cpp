@@ -148,6 +148,51 @@ TEST(GateValue, IsRedWithoutAValueAndSaysWhy) {
   EXPECT_EQ(dead.detail, "run failed: std::bad_alloc");
 }
 
+/// A curve of the run from 0 to `end`, of ordinate 3 x, and a reference of ordinate 2 x.
+Judge draws(double end) {
+  return [end](const Case&, const RunRequest&, const Record&) {
+    return Judgement{{},
+                     {{"pressure", "run", {0.0, end}, {0.0, 3 * end}, "settlement"},
+                      {"pressure", "exact", {0.0, 9.0}, {0.0, 18.0}, "settlement"}}};
+  };
+}
+
+Case one_run_with_readings() {
+  Case definition = one_run();
+  definition.readings = {
+      {.id = "first", .title = "", .curve = "pressure", .at = 1.0, .within = 0.0, .over = ""},
+      {.id = "ratio", .title = "", .curve = "pressure", .at = 2.0, .within = 0.0, .over = "exact"}};
+  Gate second = gate("reading.ratio", Comparison::at_most, 2.0);
+  second.id = "another";
+  definition.gates = {gate("reading.first", Comparison::at_most, 4.0), second};
+  return definition;
+}
+
+TEST(GateValue, MayBeAReadingOffACurve) {
+  const CaseVerdict verdict = judge_case(one_run_with_readings(), {completed()}, draws(2.0));
+  EXPECT_DOUBLE_EQ(verdict.runs[0].metrics.at("reading.first"), 3.0);
+  EXPECT_DOUBLE_EQ(verdict.runs[0].metrics.at("reading.ratio"), 1.5);
+  EXPECT_DOUBLE_EQ(verdict.runs[0].gates[0].value, 3.0);
+  EXPECT_EQ(verdict.status, CaseStatus::pass);
+}
+
+TEST(GateValue, OfAReadingIsRedWhereTheCurveDoesNotReach) {
+  const CaseVerdict verdict = judge_case(one_run_with_readings(), {completed()}, draws(1.5));
+  EXPECT_FALSE(verdict.runs[0].metrics.contains("reading.ratio"));
+  EXPECT_EQ(verdict.runs[0].gates[0].status, GateStatus::pass);
+  EXPECT_EQ(verdict.runs[0].gates[1].status, GateStatus::fail);
+  EXPECT_EQ(verdict.runs[0].gates[1].detail,
+            "the run completed but the curve pressure goes from 0 to 1.5 m and does not reach 2 m");
+}
+
+TEST(GateValue, OfAReadingIsThereWhereTheCurveOfARunThatEndedEarlyReaches) {
+  const CaseVerdict verdict = judge_case(one_run_with_readings(), {ended_early()}, draws(1.5));
+  EXPECT_EQ(verdict.runs[0].gates[0].status, GateStatus::pass);
+  EXPECT_EQ(verdict.runs[0].gates[1].status, GateStatus::fail);
+  EXPECT_NE(verdict.runs[0].gates[1].detail.find("run ended outside_grid"), std::string::npos);
+  EXPECT_TRUE(judge_case(one_run_with_readings(), {died()}, draws(1.5)).runs[0].metrics.empty());
+}
+
 TEST(Control, IsRedWhenItsValueViolatesTheThreshold) {
   const GateResult result =
       only_result(control(gate("error", Comparison::at_most, 0.01)), completed(), says({{"error", 0.5}}));
@@ -530,6 +575,7 @@ TEST(Scope, ReadsLikeASentence) {
             "50G, cpgimp, h 0.02 m");
   EXPECT_EQ(scope_of({{"/scene/damping", 0.8}, {"/scene/bodies/0/material", {{"law", "zhang_elastic"}}}}),
             "damping 0.8, zhang_elastic");
+  EXPECT_EQ(scope_of({{"setting", "half the rate, 50"}, {scheme, "mpm"}}), "half the rate, 50, mpm");
   EXPECT_EQ(scope_of({}), "the run");
 }
 
