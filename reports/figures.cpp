@@ -12,6 +12,7 @@
 #include <stdexcept>
 
 #include "reports/typography.hpp"
+#include "vv/curves.hpp"
 #include "vv/norms.hpp"
 
 namespace mpm::reports {
@@ -1077,10 +1078,36 @@ void set_notes(FieldPlot& plot, const std::vector<Member>& members, std::size_t 
 // ---- metrics
 // ----------------------------------------------------------------------------------------------------
 
-std::string unit_of(const std::string& metric) {
+const vv::Reading* reading_of(const vv::Case& definition, const std::string& metric) {
+  for (const vv::Reading& reading : definition.readings)
+    if (metric == vv::reading_prefix + reading.id) return &reading;
+  return nullptr;
+}
+
+/// The SI unit of a metric of a case; "-" of a pure number, empty of one that is not known.
+std::string si_unit_of(const std::string& metric, const vv::Case& definition) {
+  if (const vv::Reading* reading = reading_of(definition, metric)) return vv::metric_of(*reading).unit;
   for (const vv::Metric& known : vv::metric_catalogue())
-    if (known.name == metric && known.unit != "-") return " [" + escaped(known.unit) + "]";
+    if (known.name == metric) return known.unit;
   return "";
+}
+
+std::string unit_of(const std::string& metric) {
+  const std::string unit = si_unit_of(metric, {});
+  return unit.empty() || unit == "-" ? "" : " [" + escaped(unit) + "]";
+}
+
+/// Whether a metric is a value of its own and no error: it goes to a limit other than zero.
+bool is_value(const std::string& metric) {
+  return metric.starts_with(vv::reading_prefix) || metric.starts_with("load_curve.");
+}
+
+/// How the values of a metric are shown, and the axis label that says so. A pure number stays one.
+Quantity shown_metric(const std::string& metric, const vv::Case& definition, double reach) {
+  const std::string unit = si_unit_of(metric, definition), name = name_of_metric(metric, definition);
+  if (unit.empty() || unit == "-") return {1.0, name};
+  const Quantity shown = shown_unit(unit, reach);
+  return {shown.factor, name + " [" + shown.label + "]"};
 }
 
 /// Without the reference, which the panel's title names.
@@ -1128,17 +1155,21 @@ std::optional<PlotCurve> floor_curve(const std::vector<Member>& members, const s
   return curve;
 }
 
+/// Whether a run is one of those that a series was made of.
+bool is_part_of(const Member& member, const vv::SeriesVerdict& series) {
+  return std::all_of(series.fixed.begin(), series.fixed.end(), [&member](const auto& entry) {
+    const vv::Json* value = value_of(member.run->parameters, entry.first);
+    return value && *value == entry.second;
+  });
+}
+
 /// Observed orders of one series between neighbouring refinements, for a note; empty if the verdict has none.
 std::string order_note(const vv::CaseVerdict& verdict, const vv::FigureRequest& request, const Member& member,
                        const std::string& metric) {
   for (const vv::SeriesVerdict& series : verdict.series) {
-    if (series.across != request.over) continue;
-    const bool same = std::all_of(series.fixed.begin(), series.fixed.end(), [&member](const auto& entry) {
-      const vv::Json* value = value_of(member.run->parameters, entry.first);
-      return value && *value == entry.second;
-    });
+    if (series.across != request.over || !is_part_of(member, series)) continue;
     const auto orders = series.orders.find(metric);
-    if (!same || orders == series.orders.end() || orders->second.empty()) continue;
+    if (orders == series.orders.end() || orders->second.empty()) continue;
     return "Observed orders of " + member.series + ": " + orders_markup(orders->second);
   }
   return "";
@@ -1150,9 +1181,109 @@ std::string subject_of(const std::string& metric) {
   return "against " + short_name_of_reference(metric.substr(0, metric.find('.')));
 }
 
+/// The convergence of a metric over the refinement that a run is part of; null where none was found.
+const vv::GridConvergence* convergence_of(const vv::CaseVerdict& verdict, const std::string& across,
+                                          const Member& member, const std::string& metric) {
+  for (const vv::SeriesVerdict& series : verdict.series) {
+    if (series.across != across || !is_part_of(member, series)) continue;
+    const auto found = series.convergence.find(metric);
+    if (found != series.convergence.end()) return &found->second;
+  }
+  return nullptr;
+}
+
+/// An upright bar with a cap at either end.
+PlotCurve error_bar(double x, double lower, double upper, double half_cap, const Color& color) {
+  Look look;
+  look.color = color;
+  look.line_width = 0.9;
+  return {"",
+          look,
+          {x - half_cap, x + half_cap, x, x, x - half_cap, x + half_cap},
+          {lower, lower, lower, upper, upper, upper},
+          1};
+}
+
+/// A value over the cell size on axes that begin at a cell size of zero, where the extrapolated value stands
+/// and how far off the finest may be.
+Panel value_panel(const std::vector<Member>& members, const vv::CaseVerdict& verdict,
+                  const vv::FigureRequest& request, const std::string& metric, const std::string& title) {
+  Panel panel;
+  panel.title = title;
+  panel.x.label = "cell size <i>h</i> [mm]";
+  Extent values, sizes;
+  for (const Member& member : members) {
+    values.include(metric_of(*member.run, metric));
+    sizes.include(member.cell_size * 1e3);
+  }
+  if (sizes.empty()) sizes.include(1.0);
+  const Quantity shown = shown_metric(metric, verdict.definition, values.empty() ? 0.0 : values.reach());
+  panel.y.label = shown.label;
+  panel.x.ticks = {{0.0, "0"}};
+  panel.x.range = {-0.08 * sizes.upper, 1.08 * sizes.upper};
+  const auto labels = distinct(members, [](const Member& m) { return m.series; });
+  bool any_bar = false;
+  for (std::size_t k = 0; k < labels.size(); ++k) {
+    std::map<double, double> points;
+    const Member* first = nullptr;
+    for (const Member& member : members) {
+      const double value = metric_of(*member.run, metric);
+      if (member.series != labels[k] || !std::isfinite(member.cell_size)) continue;
+      if (!first) first = &member;
+      panel.x.ticks.emplace_back(member.cell_size * 1e3, millimetres(member.cell_size));
+      if (std::isfinite(value)) points[member.cell_size * 1e3] = value * shown.factor;
+    }
+    if (!first || points.empty()) continue;
+    Look look = look_of_series(first->look);
+    look.marker_size = look.filled ? 4.0 : 4.8;
+    PlotCurve curve{labels[k], look, {}, {}, 2};
+    for (const auto& [x, y] : points) {
+      curve.x.push_back(x);
+      curve.y.push_back(y);
+    }
+    const std::string orders = order_note(verdict, request, *first, metric);
+    if (!orders.empty()) panel.notes.push_back(orders);
+    if (const vv::GridConvergence* found = convergence_of(verdict, request.over, *first, metric)) {
+      // Series side by side, so that no bar hides another.
+      const double beside = static_cast<double>(k) - (static_cast<double>(labels.size()) - 1.0) / 2;
+      const double x = 0.025 * sizes.upper * beside, finest = points.begin()->second;
+      const double reach = found->uncertainty * std::abs(finest);
+      any_bar = true;
+      values.include((finest - reach) / shown.factor);
+      values.include((finest + reach) / shown.factor);
+      panel.curves.push_back(error_bar(x, finest - reach, finest + reach, 0.009 * sizes.upper, look.color));
+      if (std::isfinite(found->extrapolated)) {
+        const double limit = found->extrapolated * shown.factor;
+        values.include(found->extrapolated);
+        Look to_limit = look;
+        to_limit.marker = MarkerShape::none;
+        to_limit.line_width = 0.8;
+        to_limit.dash = {1.0, 2.0};
+        panel.curves.push_back({"", to_limit, {x, points.begin()->first}, {limit, finest}, 0});
+        Look mark = mark_look(MarkerShape::diamond, 4.6, look.color);
+        panel.curves.push_back({"", mark, {x}, {limit}, 3});
+      }
+    }
+    panel.curves.push_back(std::move(curve));
+  }
+  std::sort(panel.x.ticks.begin(), panel.x.ticks.end());
+  panel.x.ticks.erase(std::unique(panel.x.ticks.begin(), panel.x.ticks.end()), panel.x.ticks.end());
+  const Range wide = values.widened(0.1);
+  panel.y.range = {wide.lower * shown.factor, wide.upper * shown.factor};
+  if (any_bar)
+    panel.notes.push_back(
+        "At <i>h</i> = 0: the extrapolated value, where the order allows one, and the finest value ± its "
+        "uncertainty of discretisation.");
+  for (std::string& note :
+       notes_on_runs(members, [&](const Member& m) { return !std::isfinite(metric_of(*m.run, metric)); }))
+    panel.notes.push_back(std::move(note));
+  return panel;
+}
+
 Panel convergence_panel(const std::vector<Member>& members, const vv::CaseVerdict& verdict,
                         const vv::FigureRequest& request, const std::string& metric,
                         const std::string& title) {
+  if (is_value(metric)) return value_panel(members, verdict, request, metric, title);
   Panel panel;
   panel.title = title;
   panel.x.label = "cell size <i>h</i> [mm]";
@@ -1243,9 +1374,10 @@ std::vector<LevelLine> gate_levels(const vv::Case& definition, const std::vector
 Panel bar_panel(const std::vector<Member>& members, const vv::CaseVerdict& verdict,
                 const std::string& metric) {
   Panel panel;
-  panel.title = capitalised(name_of_metric(metric));
+  panel.title = capitalised(name_of_metric(metric, verdict.definition));
   panel.y.scale = Scale::logarithmic;
-  panel.y.label = axis_name_of_metric(metric);
+  panel.y.label = reading_of(verdict.definition, metric) ? shown_metric(metric, verdict.definition, 0.0).label
+                                                         : axis_name_of_metric(metric);
   const auto series = distinct(members, [](const Member& m) { return m.series; });
   const auto groups = distinct(members, [](const Member& m) { return m.panel; });
   std::vector<double> values;
@@ -1275,6 +1407,90 @@ Panel bar_panel(const std::vector<Member>& members, const vv::CaseVerdict& verdi
   const bool cut =
       std::any_of(values.begin(), values.end(), [&panel](double v) { return v > panel.y.range.upper; });
   if (cut) panel.y.range.upper *= 4.0;
+  return panel;
+}
+
+// ---- decomposition
+// ------------------------------------------------------------------------------------------------
+
+/// The run that a member's change is seen against: the first value of the axis, all else alike.
+const Member* baseline_of(const Member& member, const std::vector<Member>& members, const vv::Json& first,
+                          const std::string& over) {
+  for (const Member& other : members) {
+    const vv::Json* value = value_of(other.run->parameters, over);
+    if (value && *value == first && other.panel == member.panel && other.series == member.series)
+      return &other;
+  }
+  return nullptr;
+}
+
+/// "+14 %"; of a change beyond a factor of ten, how many times as much.
+std::string change_text(double value, double baseline) {
+  if (!std::isfinite(value) || !std::isfinite(baseline) || baseline == 0.0) return "";
+  const double change = 100.0 * (value / baseline - 1.0), size = std::abs(change);
+  if (size >= 900.0) return fmt::format("×{:.0f}", value / baseline);
+  const std::string digits = fmt::format("{:.{}f}", size, size < 9.95 ? 1 : 0);
+  const bool zero = digits == "0.0";
+  return (zero ? "±" : change < 0.0 ? "−" : "+") + digits + " %";
+}
+
+/// Where the reference solutions of the baseline's run are when they are read like the metric.
+std::vector<RowLine> reference_lines(const Member& baseline, const vv::Reading& reading,
+                                     const std::vector<std::string>& references, double factor) {
+  std::vector<RowLine> lines;
+  for (std::size_t i = 0; i < references.size(); ++i) {
+    const vv::Curve* curve = vv::find_curve(baseline.run->curves, reading.curve, references[i]);
+    const double value = curve ? vv::value_at(*curve, reading.at, reading.within).value : nan_value;
+    if (!std::isfinite(value)) continue;
+    const Look look = dashed_reference_look(i);
+    lines.push_back(
+        {value * factor, name_of_reference(references[i]), {look.color, look.line_width, look.dash}});
+  }
+  return lines;
+}
+
+constexpr double decomposition_values = 0.34;  // of the axis's width: room for values and changes
+
+RowPanel decomposition_panel(const std::vector<Member>& members, const vv::CaseVerdict& verdict,
+                             const vv::FigureRequest& request, const std::string& metric) {
+  RowPanel panel;
+  Extent extent;
+  extent.include(0.0);
+  for (const Member& member : members) extent.include(metric_of(*member.run, metric));
+  const Quantity shown = shown_metric(metric, verdict.definition, extent.reach());
+  panel.x.label = shown.label;
+  const vv::Json* first = value_of(members.front().run->parameters, request.over);
+  std::set<const Member*> baselines;
+  for (const Member& member : members) {
+    const Member* baseline = first ? baseline_of(member, members, *first, request.over) : nullptr;
+    if (baseline) baselines.insert(baseline);
+    const double value = metric_of(*member.run, metric);
+    const bool is_baseline = baseline == &member;
+    const std::string change = is_baseline ? "baseline"
+                               : baseline  ? change_text(value, metric_of(*baseline->run, metric))
+                                           : "";
+    RowBar bar{is_baseline ? 0U : 1U, value * shown.factor};
+    bar.text = std::isfinite(value) ? number_markup(bar.value) + (change.empty() ? "" : " · " + change)
+               : member.run->record.completed() ? "not measured"
+                                                : "did not complete";
+    std::string name = member.over;
+    if (member.series != "simulation") name += (name.empty() ? "" : ", ") + member.series;
+    panel.rows.push_back({name, {bar}});
+  }
+  if (baselines.size() == 1) {
+    const Member& baseline = **baselines.begin();
+    const double value = metric_of(*baseline.run, metric);
+    if (std::isfinite(value)) panel.lines.push_back({value * shown.factor, "", {ink, 0.8, {}}});
+    const vv::Reading* reading = reading_of(verdict.definition, metric);
+    if (reading && reading->over.empty())
+      for (RowLine& line : reference_lines(baseline, *reading, request.references, shown.factor)) {
+        extent.include(line.value / shown.factor);
+        panel.lines.push_back(std::move(line));
+      }
+  }
+  const double span = std::max((extent.upper - extent.lower) * shown.factor, 1e-300);
+  panel.x.range = {extent.lower * shown.factor - (extent.lower < 0.0 ? 0.04 * span : 0.0),
+                   extent.upper * shown.factor + span * decomposition_values / (1.0 - decomposition_values)};
   return panel;
 }
 
@@ -1385,6 +1601,11 @@ std::string name_of_metric(const std::string& metric) {
   const std::string reference = metric.substr(0, metric.find('.'));
   if (reference == "floor") return "model-form floor, " + error;
   return error + " against " + short_name_of_reference(reference);
+}
+
+std::string name_of_metric(const std::string& metric, const vv::Case& definition) {
+  const vv::Reading* reading = reading_of(definition, metric);
+  return reading ? escaped(reading->title) : name_of_metric(metric);
 }
 
 std::string name_of_ending(const vv::Record& record) {
@@ -1549,7 +1770,25 @@ ModelPlot model_plot_of(const vv::CaseVerdict& verdict, const vv::FigureRequest&
   return plot;
 }
 
+RowChart decomposition_of(const vv::CaseVerdict& verdict, const vv::FigureRequest& request) {
+  RowChart chart;
+  const std::vector<Member> members = members_of(verdict, request);
+  const Look baseline = look_of_series(5);
+  Look changed = look_of_series(1);
+  changed.pattern = Look::Pattern::light;
+  chart.series = {{"baseline", baseline}, {"one cause changed", changed}};
+  for (const std::string& name : distinct(members, [](const Member& m) { return m.panel; }))
+    for (const std::string& metric : request.metrics) {
+      chart.panels.push_back(decomposition_panel(in_panel(members, name), verdict, request, metric));
+      chart.panels.back().title = name;
+    }
+  if (chart.panels.empty()) chart.panels.push_back({"No run was selected for this figure.", {}, {}, {}});
+  chart.stamp = stamp_of(verdict, members);
+  return chart;
+}
+
 Picture picture_of(const vv::CaseVerdict& verdict, const vv::FigureRequest& request) {
+  if (request.kind == "decomposition") return draw(decomposition_of(verdict, request));
   if (request.kind == "fields") return draw(field_plot_of(verdict, request));
   if (request.kind == "model") return draw(model_plot_of(verdict, request));
   return draw(plot_of(verdict, request));

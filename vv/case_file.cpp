@@ -176,6 +176,8 @@ Gate read_gate(const JsonPlace& place, const Case& read) {
 /// The keys a figure of each kind may have beside those that every figure may have.
 std::vector<std::string> figure_keys(const std::string& kind) {
   if (kind == "model") return {"id", "kind", "caption", "panels", "where"};
+  if (kind == "decomposition")
+    return {"id", "kind", "caption", "panels", "where", "over", "metrics", "references"};
   std::vector<std::string> keys = {"id", "kind", "caption", "panels", "series", "where"};
   if (kind == "profiles") keys.insert(keys.end(), {"quantity", "references"});
   if (kind == "convergence") keys.insert(keys.end(), {"over", "metrics"});
@@ -265,17 +267,17 @@ void read_layout(const JsonPlace& place, const Case& read, FigureRequest& figure
     used.push_back(parameter);
     return parameter;
   };
-  if (figure.kind == "convergence") figure.over = read_role("over");
+  if (figure.kind == "convergence" || figure.kind == "decomposition") figure.over = read_role("over");
   if (place["panels"].present()) figure.panels = read_role("panels");
   if (place["series"].present()) figure.series = read_role("series");
 }
 
 FigureRequest read_figure(const JsonPlace& place, const Case& read) {
   FigureRequest figure;
-  figure.kind = place["kind"].one_of(is_element_case(read)
-                                         ? std::vector<std::string>{"bars", "curves"}
-                                         : std::vector<std::string>{"profiles", "convergence", "bars",
-                                                                    "history", "curves", "fields", "model"});
+  figure.kind = place["kind"].one_of(
+      is_element_case(read) ? std::vector<std::string>{"bars", "curves", "decomposition"}
+                            : std::vector<std::string>{"profiles", "convergence", "bars", "history", "curves",
+                                                       "fields", "model", "decomposition"});
   place.allow_only(figure_keys(figure.kind));
   figure.id = place["id"].own_identifier(ids_of(read.figures));
   figure.caption = place["caption"].text();

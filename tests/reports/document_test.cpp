@@ -215,6 +215,25 @@ TEST(Document, EmbedsFieldsAndCurvesLikeOtherFigures) {
   EXPECT_TRUE(has(html, "Against limit analysis, exact limit load"));
 }
 
+TEST(Document, ReadingsHaveTheirTitlesAndTheirLimit) {
+  vv::CampaignVerdict campaign = support::demo_campaign();
+  vv::CaseVerdict& refined = campaign.cases[1];
+  EXPECT_FALSE(has(report_html(campaign, {}), "uncertainty of the finest"));
+  refined.definition.readings = {{"deep", "pressure at <25 mm>", "pressure", 0.025, 0.0, ""}};
+  for (vv::RunVerdict& run : refined.runs) run.metrics["reading.deep"] = 5e4;
+  vv::SeriesVerdict& series = refined.series.back();
+  series.metrics["reading.deep"] = {7e4, 6e4, 5.5e4};
+  series.convergence["reading.deep"].extrapolated = 5e4;
+  series.convergence["reading.deep"].uncertainty = 0.12;
+  std::string html = report_html(campaign, {});
+  EXPECT_TRUE(has(html, "<td>pressure at &lt;25 mm&gt; <code>reading.deep</code></td>"));
+  EXPECT_TRUE(has(html, "<td>50000; ±12 %</td>"));
+  EXPECT_TRUE(has(html, "<th class=\"n\">pressure at &lt;25 mm&gt; [Pa]</th>"));
+  EXPECT_TRUE(has(html, "Readings"));
+  series.convergence["reading.deep"].extrapolated = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(has(report_html(campaign, {}), "<td>none; ±12 %</td>"));
+}
+
 TEST(Document, TellsWhenAFigureCouldNotBeDrawn) {
   const std::string html =
       report_html(support::demo_campaign(), {{"column_figure_1", "stress", "", 0, "no renderer"}});

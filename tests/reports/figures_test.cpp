@@ -335,6 +335,147 @@ TEST(Curves, StressPathsHaveStrainToTheRight) {
   EXPECT_DOUBLE_EQ(curve(panel, "MPM")->y.back(), 60.0);
 }
 
+/// Three cell sizes of two schemes with a reading of the pressure, which goes to 50 kPa.
+vv::CaseVerdict readings() {
+  vv::CaseVerdict verdict;
+  verdict.definition.readings = {{"deep", "pressure at 25 mm", "pressure", 0.025, 0.0, ""}};
+  for (const char* scheme : {"ugimp", "cpgimp"}) {
+    vv::SeriesVerdict series;
+    series.across = support::demo::size_pointer;
+    series.fixed = {{support::demo::scheme_pointer, scheme}};
+    for (const double h : {0.02, 0.01, 0.005}) {
+      vv::RunVerdict run = support::demo::run(scheme, 1, 10);
+      run.parameters = {{support::demo::scheme_pointer, scheme},
+                        {support::demo::size_pointer, std::to_string(h) + " m"}};
+      run.metrics = {{"reading.deep", 5e4 + 1e6 * h}};
+      run.curves = {{"pressure", "terzaghi", {0.0, 0.05}, {3e4, 5e4}, "settlement"}};
+      verdict.definition.runs.push_back(support::demo::request(run, h));
+      verdict.runs.push_back(run);
+    }
+    vv::GridConvergence convergence;
+    convergence.monotone = true;
+    convergence.order = 1.0;
+    convergence.extrapolated = std::string(scheme) == "ugimp" ? 5e4 : std::numeric_limits<double>::quiet_NaN();
+    convergence.uncertainty = 0.1;
+    series.convergence["reading.deep"] = convergence;
+    series.orders["reading.deep"] = {1.0};
+    verdict.series.push_back(series);
+  }
+  return verdict;
+}
+
+TEST(Names, OfReadingsAreTheirTitles) {
+  const vv::CaseVerdict verdict = readings();
+  EXPECT_EQ(name_of_metric("reading.deep", verdict.definition), "pressure at 25 mm");
+  EXPECT_EQ(name_of_metric("cell_crossings", verdict.definition), "cell crossings");
+}
+
+vv::FigureRequest reading_request(const std::string& kind) {
+  vv::FigureRequest request;
+  request.kind = kind;
+  request.over = support::demo::size_pointer;
+  request.metrics = {"reading.deep"};
+  return request;
+}
+
+TEST(Convergence, ReadingsHaveLinearAxesFromZeroAndTheirLimitThere) {
+  vv::FigureRequest figure = reading_request("convergence");
+  figure.series = support::demo::scheme_pointer;
+  const Panel panel = plot_of(readings(), figure).panels.at(0);
+  EXPECT_EQ(panel.y.label, "pressure at 25 mm [kPa]");
+  EXPECT_EQ(panel.x.scale, Scale::linear);
+  EXPECT_EQ(panel.y.scale, Scale::linear);
+  EXPECT_LE(panel.x.range.lower, 0.0);
+  EXPECT_GT(panel.y.range.lower, 0.0);
+  EXPECT_EQ(panel.x.ticks.size(), 4U) << "zero and three sizes";
+  const PlotCurve* drawn = curve(panel, "uGIMP");
+  ASSERT_TRUE(drawn);
+  EXPECT_EQ(drawn->x, (std::vector<double>{5.0, 10.0, 20.0}));
+  EXPECT_DOUBLE_EQ(drawn->y[0], 55.0);
+  int bars = 0, limits = 0;
+  for (const PlotCurve& c : panel.curves) {
+    if (!c.label.empty()) continue;
+    if (c.x.size() == 6U) {
+      ++bars;
+      EXPECT_NEAR(c.y.front(), 55.0 - 5.5, 1e-9);
+      EXPECT_NEAR(c.y.back(), 55.0 + 5.5, 1e-9);
+      EXPECT_LT(std::abs(c.x[2]), 1.0);
+    }
+    if (c.x.size() == 1U) {
+      ++limits;
+      EXPECT_DOUBLE_EQ(c.y[0], 50.0);
+    }
+  }
+  EXPECT_EQ(bars, 2);
+  EXPECT_EQ(limits, 1) << "nothing is extrapolated where the order is not reliable";
+  EXPECT_TRUE(notes_mention(panel, "Observed orders of uGIMP: 1.00"));
+  EXPECT_TRUE(notes_mention(panel, "At <i>h</i> = 0"));
+  EXPECT_EQ(draw(plot_of(readings(), figure)).layout.panels[0].outside, 0);
+}
+
+TEST(Decomposition, ShowsTheChangeOfEachCauseAgainstTheFirst) {
+  vv::CaseVerdict verdict = readings();
+  verdict.runs.resize(3);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const char* names[] = {"as published", "thin <layer>", "half the cells"};
+    verdict.runs[k].parameters = {{"cause", names[k]}};
+  }
+  verdict.runs[1].metrics["reading.deep"] = 8e4;
+  verdict.runs[2].metrics.clear();
+  vv::FigureRequest figure = reading_request("decomposition");
+  figure.over = "cause";
+  figure.references = {"terzaghi", "embedded_limit"};
+  const RowChart chart = decomposition_of(verdict, figure);
+  ASSERT_EQ(chart.panels.size(), 1U);
+  const RowPanel& panel = chart.panels[0];
+  ASSERT_EQ(panel.rows.size(), 3U);
+  EXPECT_EQ(panel.x.label, "pressure at 25 mm [kPa]");
+  EXPECT_EQ(panel.rows[1].name, "thin &lt;layer&gt;");
+  EXPECT_EQ(panel.rows[0].bars.at(0).text, "70 · baseline");
+  EXPECT_EQ(panel.rows[1].bars.at(0).text, "80 · +14 %");
+  EXPECT_EQ(panel.rows[2].bars.at(0).text, "not measured");
+  EXPECT_DOUBLE_EQ(panel.rows[1].bars[0].value, 80.0);
+  EXPECT_EQ(panel.rows[0].bars[0].series, 0U);
+  EXPECT_EQ(panel.rows[1].bars[0].series, 1U);
+  ASSERT_EQ(panel.lines.size(), 2U) << "the baseline and the one reference that has a curve";
+  EXPECT_DOUBLE_EQ(panel.lines[0].value, 70.0);
+  EXPECT_DOUBLE_EQ(panel.lines[1].value, 40.0);
+  EXPECT_EQ(panel.lines[1].legend, "Terzaghi, surface");
+  const Picture picture = draw(chart);
+  EXPECT_EQ(picture.layout.panels[0].points.size(), 2U);
+  EXPECT_EQ(picture.layout.panels[0].not_finite, 1);
+  // No bar reaches into the column of values.
+  for (const Rectangle& value : picture.layout.panels[0].annotations)
+    for (const Point& end : picture.layout.panels[0].points) EXPECT_LT(end.x, value.left);
+}
+
+TEST(Decomposition, WhatElseVariesHasABaselineOfItsOwn) {
+  const RowChart chart = decomposition_of(readings(), reading_request("decomposition"));
+  ASSERT_EQ(chart.panels.size(), 1U);
+  ASSERT_EQ(chart.panels[0].rows.size(), 6U);
+  EXPECT_TRUE(chart.panels[0].lines.empty());
+  EXPECT_TRUE(chart.panels[0].rows[3].bars[0].text.ends_with("baseline"));
+  EXPECT_EQ(chart.panels[0].rows[3].name, "<i>h</i> = 20 mm, cpGIMP");
+  vv::FigureRequest paneled = reading_request("decomposition");
+  paneled.panels = support::demo::scheme_pointer;
+  const RowChart two = decomposition_of(readings(), paneled);
+  ASSERT_EQ(two.panels.size(), 2U);
+  EXPECT_EQ(two.panels[1].title, "cpGIMP");
+  EXPECT_EQ(two.panels[1].lines.size(), 1U);
+  paneled.where = {{"/scene/other", {1}}};
+  EXPECT_NO_THROW(draw(decomposition_of(readings(), paneled)));
+}
+
+TEST(Decomposition, ChangesHaveTheirSign) {
+  vv::CaseVerdict verdict = readings();
+  verdict.runs.resize(3);
+  verdict.runs[1].metrics["reading.deep"] = 7e4 * 0.974;
+  verdict.runs[2].metrics["reading.deep"] = 7e4 * 20.0;
+  const RowChart chart = decomposition_of(verdict, reading_request("decomposition"));
+  EXPECT_TRUE(chart.panels[0].rows[1].bars[0].text.ends_with("· −2.6 %"));
+  EXPECT_TRUE(chart.panels[0].rows[2].bars[0].text.ends_with("· ×20"));
+}
+
 bool any_mentions(const std::vector<std::string>& notes, const std::string& words) {
   return std::any_of(notes.begin(), notes.end(),
                      [&words](const std::string& note) { return note.find(words) != std::string::npos; });

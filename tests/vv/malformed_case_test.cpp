@@ -328,6 +328,11 @@ const std::vector<Malformed>& malformed_cases() {
       {R"([{"op": "replace", "path": "/figures/3", "value": {"id": "m", "kind": "model", "caption": "c"}}])",
        "/figures/3/kind", "a figure of a scene with another dimension", "which needs two dimensions",
        Schema::cannot_tell},
+      {R"([{"op": "replace", "path": "/figures/1/kind", "value": "decomposition"}, {"op": "add", "path": "/figures/1/series", "value": "/scene/scheme"}])",
+       "/figures/1/series", "one of the keys id, kind, caption, panels, where, over", "\"series\"",
+       Schema::refuses},
+      {R"([{"op": "replace", "path": "/figures/2/kind", "value": "decomposition"}])", "/figures/2/over",
+       "a swept parameter", "nothing: the key is missing", Schema::refuses},
       {R"([{"op": "remove", "path": "/figures/3/caption"}])", "/figures/3/caption",
        "a text that is not empty", "nothing: the key is missing", Schema::refuses},
   };
