@@ -133,13 +133,15 @@ void read_across(const JsonPlace& place, const Case& read, Gate& gate) {
   }
   const SweepAxis& axis = read_axis(place, read.sweep);
   const std::vector<Json> values = selected_values(axis, gate.where);
+  const bool in_cell_size =
+      gate.statistic == Statistic::last_order || gate.statistic == Statistic::discretisation_uncertainty;
   // One pair gives an order but nothing to tell that it has settled.
-  const std::size_t fewest = gate.statistic == Statistic::last_order ? 3 : 2;
+  const std::size_t fewest = in_cell_size ? 3 : 2;
   if (values.size() < fewest) {
     place.refuse("a parameter with at least " + std::to_string(fewest) + " selected values",
                  ", which has " + std::to_string(values.size()));
   }
-  if (gate.statistic == Statistic::last_order) {
+  if (in_cell_size) {
     if (is_element_case(read)) place.refuse("a parameter of a scene, which alone has cells to refine");
     // Observed orders are taken in the cell size, so it must fall from each level to the next.
     if (!refines(axis, values, read_subject(JsonPlace(&read.text, "")))) {
@@ -149,18 +151,49 @@ void read_across(const JsonPlace& place, const Case& read, Gate& gate) {
   gate.across = axis.parameter;
 }
 
-Gate read_gate(const JsonPlace& place, const Case& read) {
-  place.allow_only({"id", "metric", "statistic", "across", "where", "at_most", "at_least", "basis", "reason",
-                    "must_fail"});
-  Gate gate;
-  gate.id = place["id"].own_identifier(ids_of(read.gates));
-  gate.metric = read_metric(place["metric"], read);
-  if (const JsonPlace statistic = place["statistic"]; statistic.present()) {
-    gate.statistic = statistic.choice<Statistic>({{"value", Statistic::value},
-                                                  {"reduction", Statistic::reduction},
-                                                  {"worst_ratio", Statistic::worst_ratio},
-                                                  {"last_order", Statistic::last_order}});
+Statistic read_statistic(const JsonPlace& place) {
+  if (!place.present()) return Statistic::value;
+  return place.choice<Statistic>({{"value", Statistic::value},
+                                  {"reduction", Statistic::reduction},
+                                  {"worst_ratio", Statistic::worst_ratio},
+                                  {"last_order", Statistic::last_order},
+                                  {"least_ratio", Statistic::least_ratio},
+                                  {"spread", Statistic::spread},
+                                  {"curve_spread", Statistic::curve_spread},
+                                  {"discretisation_uncertainty", Statistic::discretisation_uncertainty}});
+}
+
+/// What a gate looks at: a metric or, to compare whole curves, a curve and a stretch of it.
+void read_object(const JsonPlace& place, const Case& read, Gate& gate) {
+  if (gate.statistic != Statistic::curve_spread) {
+    gate.metric = read_metric(place["metric"], read);
+    return;
   }
+  gate.curve = read_curve_name(place["curve"], read);
+  gate.within = read_within(place["within"], read);
+  if (place["from"].present()) gate.from = read_abscissa(place["from"], read);
+  if (place["up_to"].present()) gate.up_to = read_abscissa(place["up_to"], read);
+  if (gate.from && gate.up_to && !(*gate.up_to > *gate.from))
+    place["up_to"].refuse("an end beyond where the stretch begins");
+}
+
+/// The keys a gate on a metric or on a curve may have.
+std::vector<std::string> gate_keys(Statistic statistic) {
+  std::vector<std::string> keys = {"id",       "statistic", "across", "where",    "at_most",
+                                   "at_least", "basis",     "reason", "must_fail"};
+  if (statistic == Statistic::curve_spread)
+    keys.insert(keys.begin() + 1, {"curve", "from", "up_to", "within"});
+  else
+    keys.insert(keys.begin() + 1, "metric");
+  return keys;
+}
+
+Gate read_gate(const JsonPlace& place, const Case& read) {
+  Gate gate;
+  gate.statistic = read_statistic(place["statistic"]);
+  place.allow_only(gate_keys(gate.statistic));
+  gate.id = place["id"].own_identifier(ids_of(read.gates));
+  read_object(place, read, gate);
   gate.where = read_where(place["where"], read.sweep);
   read_across(place["across"], read, gate);
   read_threshold(place, gate);

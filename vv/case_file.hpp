@@ -29,12 +29,19 @@ class CaseError : public std::runtime_error {
 
 enum class Comparison { at_most, at_least };
 
-/// What a gate compares: a metric of each run, or a property of the series of a metric over a refinement.
+/// What a gate compares: a metric of each run, or a property of the series of a metric or curve along an axis
+/// of the sweep. A series goes from the coarsest cell size to the finest, runs of one size in the order of
+/// the sweep.
 enum class Statistic {
-  value,        ///< the metric itself, one result per run
-  reduction,    ///< first / last of the series
-  worst_ratio,  ///< largest (next / previous) along the series; below 1 means it falls at every refinement
-  last_order,   ///< observed order of the last pair
+  value,         ///< the metric itself, one result per run
+  reduction,     ///< first / last of the series
+  worst_ratio,   ///< largest (next / previous) along the series; below 1 means it falls at every step
+  last_order,    ///< observed order of the last pair
+  least_ratio,   ///< smallest (next / previous) along the series; above 1 means it grows at every step
+  spread,        ///< (largest - smallest) / magnitude of the mean, of the series
+  curve_spread,  ///< how far apart the curves of the series are: `curve_spread` of vv/curves.hpp
+  discretisation_uncertainty,  ///< of the last value, relative to it: `grid_convergence` of
+                               ///< vv/grid_convergence.hpp
 };
 
 /// A sweep value that restricts a gate or a figure to some runs: parameter and allowed values.
@@ -45,7 +52,14 @@ struct Selector {
 
 struct Gate {
   std::string id;
-  std::string metric;  ///< a name in `metric_catalogue()` of vv/norms.hpp, or a reading
+  std::string
+      metric;  ///< a name in `metric_catalogue()` of vv/norms.hpp, or a reading; empty for curve_spread
+  std::string curve;  ///< of curve_spread: name of a curve of the runs
+  std::optional<double> from =
+      {};  ///< of curve_spread: abscissa at which it begins; else where all curves do
+  std::optional<double> up_to =
+      {};               ///< of curve_spread: abscissa at which it ends; else where the first curve does
+  double within = 0.0;  ///< of curve_spread: half-width of the moving mean of abscissae; 0 for none
   Statistic statistic = Statistic::value;
   std::string across;  ///< swept parameter that makes the series, for the series statistics; else empty
   std::vector<Selector> where;

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <optional>
 
 namespace mpm::vv {
 namespace {
@@ -95,6 +93,57 @@ ReadOff no_curve(const std::string& name, const std::string& source) {
                                   : fmt::format("{} has no curve {}", source, name)};
 }
 
+/// What curves cover: all of them, and at least one of them.
+struct Coverage {
+  Range common, together;
+  std::size_t last_to_begin = 0, first_to_end = 0;  ///< the curves that bound the common part
+};
+
+Coverage coverage_of(const std::vector<Range>& ranges) {
+  Coverage coverage{ranges.front(), ranges.front()};
+  for (std::size_t k = 1; k < ranges.size(); ++k) {
+    coverage.together.begin = std::min(coverage.together.begin, ranges[k].begin);
+    coverage.together.end = std::max(coverage.together.end, ranges[k].end);
+    if (ranges[k].begin > coverage.common.begin) {
+      coverage.common.begin = ranges[k].begin;
+      coverage.last_to_begin = k;
+    }
+    if (ranges[k].end < coverage.common.end) {
+      coverage.common.end = ranges[k].end;
+      coverage.first_to_end = k;
+    }
+  }
+  return coverage;
+}
+
+/// The curve that cuts off most of what the others cover.
+std::size_t shortest_of(const Coverage& coverage) {
+  const double missing_first = coverage.common.begin - coverage.together.begin;
+  const double missing_last = coverage.together.end - coverage.common.end;
+  return missing_last >= missing_first ? coverage.first_to_end : coverage.last_to_begin;
+}
+
+double at_step(const Range& range, std::size_t step, std::size_t steps) {
+  return std::lerp(range.begin, range.end, static_cast<double>(step) / static_cast<double>(steps - 1));
+}
+
+ReadOff spread_over(const std::vector<const Curve*>& curves, const Range& range, double within) {
+  constexpr std::size_t steps = 200;
+  double largest_difference = 0.0, largest_mean = 0.0;
+  for (std::size_t step = 0; step < steps; ++step) {
+    std::vector<double> values;
+    for (const Curve* curve : curves) {
+      ReadOff value = value_at(*curve, at_step(range, step, steps), within);
+      if (!value.lack.empty()) return {.lack = value.lack, .of = values.size()};
+      values.push_back(value.value);
+    }
+    const auto [least, greatest] = std::minmax_element(values.begin(), values.end());
+    largest_difference = std::max(largest_difference, *greatest - *least);
+    largest_mean = std::max(largest_mean, std::abs(mean_of(values)));
+  }
+  return found(largest_difference / largest_mean);
+}
+
 }  // namespace
 
 Metric metric_of(const Reading& reading) {
@@ -130,6 +179,32 @@ ReadOff read_off(const Reading& reading, const std::vector<Curve>& curves) {
   ReadOff unit = read_alike(*reference, *run, reading);
   if (!unit.lack.empty()) return {.lack = reading.over + ": " + unit.lack};
   return found(value.value / unit.value);
+}
+
+ReadOff curve_spread(const std::vector<const Curve*>& curves, const Stretch& stretch, double within) {
+  constexpr double least_share = 0.95;
+  std::vector<Range> ranges;
+  for (const Curve* curve : curves) {
+    const std::optional<Range> range = range_of(*curve);
+    if (!range) return {.lack = fmt::format("the curve {} has no samples", curve->name), .of = ranges.size()};
+    for (const std::optional<double>& end : {stretch.from, stretch.up_to}) {
+      if (!end || inside(*range, *end)) continue;
+      return {.lack = out_of_reach(*curve, *end).lack, .of = ranges.size()};
+    }
+    ranges.push_back(*range);
+  }
+  Coverage coverage = coverage_of(ranges);
+  if (stretch.from) coverage.common.begin = coverage.together.begin = *stretch.from;
+  if (stretch.up_to) coverage.common.end = coverage.together.end = *stretch.up_to;
+  const double all = coverage.together.length();
+  const double share = all > 0.0 ? std::max(0.0, coverage.common.length()) / all : 0.0;
+  if (share >= least_share) return spread_over(curves, coverage.common, within);
+  const std::size_t shortest = shortest_of(coverage);
+  return {.lack = fmt::format(
+              "the curve {} goes from {:.6g} to {:.6g}{}: the curves have only {:.1f} % in common",
+              curves[shortest]->name, ranges[shortest].begin, ranges[shortest].end,
+              unit_after(*curves[shortest]), 100 * share),
+          .of = shortest};
 }
 
 }  // namespace mpm::vv

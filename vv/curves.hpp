@@ -1,13 +1,15 @@
 #pragma once
 
+#include <cstddef>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "vv/norms.hpp"
 #include "vv/verdict.hpp"
 
-/// Numbers read off curves.
+/// Numbers read off curves: of one run at one abscissa, and of several runs against each other.
 namespace mpm::vv {
 
 /// Metrics that are readings are called this and the reading's id.
@@ -16,10 +18,11 @@ inline constexpr const char* reading_prefix = "reading.";
 /// A reading as an entry of the catalogue of metrics.
 Metric metric_of(const Reading& reading);
 
-/// A number read off a curve or, where it is NaN, why there is none.
+/// A number read off one or several curves or, where it is NaN, why there is none.
 struct ReadOff {
   double value = std::numeric_limits<double>::quiet_NaN();
-  std::string lack;  ///< for a person; empty beside a finite value
+  std::string lack;    ///< for a person; empty beside a finite value
+  std::size_t of = 0;  ///< which of several curves lacks it
 };
 
 /// The curve of this name and source, "run" or a reference solution; null without one.
@@ -33,5 +36,19 @@ ReadOff value_at(const Curve& curve, double abscissa, double within);
 /// What a reading says of a run with these curves. Over a reference solution its curve is taken at the very
 /// abscissae at which the run's is.
 ReadOff read_off(const Reading& reading, const std::vector<Curve>& curves);
+
+/// The stretch of abscissae over which curves are compared; open ends are those of the curves.
+struct Stretch {
+  std::optional<double> from, up_to;
+};
+
+/// How far apart curves are: the largest difference between the highest and the lowest of them at one
+/// abscissa, over the largest magnitude of their mean, on a grid of 200 abscissae at each of which every
+/// curve is read by `value_at`. The curves are at least two.
+///
+/// They are compared where all of them are. That must be 95 % of what they cover together, since curves of
+/// which one breaks off have not been compared; an end that `stretch` gives is taken instead, and every curve
+/// must reach it.
+ReadOff curve_spread(const std::vector<const Curve*>& curves, const Stretch& stretch, double within);
 
 }  // namespace mpm::vv

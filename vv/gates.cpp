@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 
 #include "vv/curves.hpp"
+#include "vv/grid_convergence.hpp"
 
 namespace mpm::vv {
 namespace {
@@ -112,6 +115,28 @@ double observed_order(double coarse_error, double fine_error, double coarse_size
   return std::log(coarse_error / fine_error) / std::log(coarse_size / fine_size);
 }
 
+/// The steps of a series, each value over the one before.
+std::vector<double> ratios_of(const std::vector<double>& values) {
+  std::vector<double> ratios;
+  for (std::size_t k = 0; k + 1 < values.size(); ++k) ratios.push_back(values[k + 1] / values[k]);
+  return ratios;
+}
+
+/// The last in the order of `less`; not a number if any is not, where std::max_element may lose it.
+template <class Less>
+double extreme_of(const std::vector<double>& values, Less less) {
+  if (std::any_of(values.begin(), values.end(), [](double value) { return std::isnan(value); }))
+    return not_measured;
+  return *std::max_element(values.begin(), values.end(), less);
+}
+
+double spread_of(const std::vector<double>& values) {
+  const auto [least, most] = std::minmax_element(values.begin(), values.end());
+  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+  return (*most - *least) / std::abs(mean);
+}
+
+/// Of finite values, at least two.
 double statistic_of(Statistic statistic, const std::vector<double>& values,
                     const std::vector<double>& cell_size) {
   const std::size_t last = values.size() - 1;
@@ -120,18 +145,58 @@ double statistic_of(Statistic statistic, const std::vector<double>& values,
       return values[last];
     case Statistic::reduction:
       return values[0] / values[last];
-    case Statistic::worst_ratio: {
-      double worst = values[1] / values[0];
-      for (std::size_t k = 1; k < last; ++k) {
-        const double ratio = values[k + 1] / values[k];
-        if (!(ratio <= worst) && !std::isnan(worst)) worst = ratio;  // a NaN must win and stay
-      }
-      return worst;
-    }
+    case Statistic::worst_ratio:
+      return extreme_of(ratios_of(values), std::less<>());
+    case Statistic::least_ratio:
+      return extreme_of(ratios_of(values), std::greater<>());
+    case Statistic::spread:
+      return spread_of(values);
     case Statistic::last_order:
       return observed_order(values[last - 1], values[last], cell_size[last - 1], cell_size[last]);
+    case Statistic::curve_spread:
+    case Statistic::discretisation_uncertainty:
+      break;  // are more than a number of the values
   }
   return not_measured;
+}
+
+/// Adds to what a series lacks: the first run is told of, and ending early excuses all runs or none.
+void add_lack(Measurement& lacking, const RunVerdict& run, const std::string& detail, bool ended_early) {
+  const bool first = lacking.detail.empty();
+  if (first) lacking.detail = scope_of(run.parameters) + ": " + detail;
+  lacking.ended_early = ended_early && (first || lacking.ended_early);
+}
+
+/// The same where the run's curve is to blame.
+void add_lack_of_curve(Measurement& lacking, const RunVerdict& run, const std::string& lack) {
+  const bool completed = run.record.completed();
+  add_lack(lacking, run, completed ? lack : ending_of(run.record) + ", " + lack,
+           !completed && run.record.failure.empty());
+}
+
+/// How far apart the curves of a series are.
+Measurement measure_curves(const Gate& gate, const std::vector<const RunVerdict*>& levels) {
+  std::vector<const Curve*> curves;
+  Measurement lacking;
+  for (const RunVerdict* level : levels) {
+    curves.push_back(find_curve(level->curves, gate.curve, "run"));
+    if (!curves.back()) add_lack_of_curve(lacking, *level, "the run has no curve " + gate.curve);
+  }
+  if (!lacking.detail.empty()) return lacking;
+  const ReadOff spread = curve_spread(curves, {gate.from, gate.up_to}, gate.within);
+  if (spread.lack.empty()) return {.value = spread.value, .detail = {}};
+  add_lack_of_curve(lacking, *levels[spread.of], spread.lack);
+  return lacking;
+}
+
+/// How certain the finest value of a series is; the detail says how that was found.
+Measurement measure_uncertainty(const std::vector<double>& values, const std::vector<double>& cell_size) {
+  const std::optional<GridConvergence> convergence = grid_convergence(cell_size, values);
+  if (convergence) return {.value = convergence->uncertainty, .detail = convergence->method};
+  return {.value = not_measured,
+          .detail =
+              "it takes three levels, each with smaller cells than the one before, and a last value that is "
+              "not 0"};
 }
 
 /// A statistic of a series; without a value it tells of the first run that lacks one.
@@ -141,17 +206,17 @@ Measurement measure(const Case& definition, const Gate& gate, const std::vector<
     return {.value = not_measured,
             .detail = fmt::format("a series needs two runs, this one has {}", levels.size())};
   }
+  if (gate.statistic == Statistic::curve_spread) return measure_curves(gate, levels);
   std::vector<double> values;
   Measurement lacking;
   for (const RunVerdict* level : levels) {
     const Measurement measurement = measure(definition, *level, gate.metric);
     values.push_back(measurement.value);
-    if (std::isfinite(measurement.value)) continue;
-    const bool first = lacking.detail.empty();
-    if (first) lacking.detail = scope_of(level->parameters) + ": " + measurement.detail;
-    lacking.ended_early = measurement.ended_early && (first || lacking.ended_early);
+    if (!std::isfinite(measurement.value))
+      add_lack(lacking, *level, measurement.detail, measurement.ended_early);
   }
   if (!lacking.detail.empty()) return lacking;
+  if (gate.statistic == Statistic::discretisation_uncertainty) return measure_uncertainty(values, cell_size);
   const double value = statistic_of(gate.statistic, values, cell_size);
   if (std::isfinite(value)) return {.value = value, .detail = {}};
   return {.value = not_measured, .detail = "the statistic of these values is not a finite number"};
@@ -173,6 +238,14 @@ const char* name_of_statistic(Statistic statistic) {
       return "worst_ratio";
     case Statistic::last_order:
       return "last_order";
+    case Statistic::least_ratio:
+      return "least_ratio";
+    case Statistic::spread:
+      return "spread";
+    case Statistic::curve_spread:
+      return "curve_spread";
+    case Statistic::discretisation_uncertainty:
+      return "discretisation_uncertainty";
   }
   return "value";
 }
@@ -187,7 +260,7 @@ GateStatus status_of(const Gate& gate, const Measurement& measurement) {
 
 GateResult result_of(const Gate& gate, const std::string& scope, const Measurement& measurement) {
   GateResult result{.id = gate.id,
-                    .metric = gate.metric,
+                    .metric = gate.metric.empty() ? gate.curve : gate.metric,
                     .statistic = name_of_statistic(gate.statistic),
                     .basis = gate.basis,
                     .reason = gate.reason,
@@ -375,8 +448,16 @@ class Bench {
       for (const RunVerdict* level : levels) values.push_back(measure(definition(), *level, metric).value);
       std::vector<double> orders = orders_of(values, series.cell_size);
       if (!orders.empty()) series.orders[metric] = std::move(orders);
+      if (!has_uncertainty(metric)) continue;
+      if (std::optional<GridConvergence> found = grid_convergence(series.cell_size, values))
+        series.convergence[metric] = *std::move(found);
     }
     return series;
+  }
+
+  /// Whether a metric is a value of its own, which goes to a limit other than zero. Errors have their orders.
+  static bool has_uncertainty(const std::string& metric) {
+    return metric.starts_with(reading_prefix) || metric.starts_with("load_curve.");
   }
 
   /// Empty unless every value is positive and every level is finer than the one before: else there is no

@@ -92,12 +92,25 @@ Json run_to_json(const RunVerdict& run) {
           {"repeat_digest", record.repeat_digest}};
 }
 
+Json convergence_by_name(const std::map<std::string, GridConvergence>& found) {
+  Json json = Json::object();
+  for (const auto& [name, convergence] : found) {
+    json[name] = {{"monotone", convergence.monotone},
+                  {"order", number(convergence.order)},
+                  {"extrapolated", number(convergence.extrapolated)},
+                  {"uncertainty", number(convergence.uncertainty)},
+                  {"method", convergence.method}};
+  }
+  return json;
+}
+
 Json series_to_json(const SeriesVerdict& series) {
   return {{"across", series.across},
           {"fixed", parameters_to_json(series.fixed)},
           {"cell_size", numbers(series.cell_size)},
           {"metrics", series_by_name(series.metrics)},
           {"orders", series_by_name(series.orders)},
+          {"convergence", convergence_by_name(series.convergence)},
           {"gates", gates_to_json(series.gates)}};
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "vv/case_file.hpp"
+#include "vv/grid_convergence.hpp"
 #include "vv/record.hpp"
 
 namespace mpm::vv {
@@ -28,7 +29,7 @@ enum class GateStatus {
 
 /// A gate applied to one run or one series of runs.
 struct GateResult {
-  std::string id, metric, statistic, basis, reason;
+  std::string id, metric, statistic, basis, reason;  ///< the metric of curve_spread is the curve
   std::string scope;   ///< the runs it was applied to, for a person: "50G, cpgimp"
   double value = 0.0;  ///< NaN when it could not be measured; then `detail` says why and the gate is red
   std::string op;      ///< "<=" or ">="
@@ -55,6 +56,8 @@ struct SeriesVerdict {
   std::vector<double> cell_size;                       ///< [m], from coarse to fine, one entry per run
   std::map<std::string, std::vector<double>> metrics;  ///< NaN where a run has none
   std::map<std::string, std::vector<double>> orders;   ///< observed order of each neighbouring pair
+  std::map<std::string, GridConvergence>
+      convergence;  ///< of readings and load curves over three levels or more
   std::vector<GateResult> gates;
 };
 

@@ -418,6 +418,93 @@ TEST(CaseFile, reads_readings) {
   EXPECT_TRUE(parsed(strip_case()).readings.empty());
 }
 
+/// The strip at three speeds, its curves compared.
+Json strip_at_speeds() {
+  Json text = strip_with_readings();
+  text["sweep"] = Json::parse(R"([{ "name": "speed", "variants": [
+    { "name": "as written", "set": {} },
+    { "name": "half", "set": { "/scene/rigid_bodies/0/velocity/1": "-0.5 mm/s", "/scene/termination/time": "4 s" } },
+    { "name": "double", "set": { "/scene/rigid_bodies/0/velocity/1": "-2 mm/s", "/scene/termination/time": "1 s" } }]}])");
+  text["gates"] = Json::parse(R"([
+    { "id": "curves", "statistic": "curve_spread", "curve": "pressure", "across": "speed", "from": "0.1 mm",
+      "up_to": "1.9 mm", "within": "0.05 mm", "at_most": 0.05, "basis": "requirement", "reason": "Slow enough." },
+    { "id": "values", "statistic": "spread", "metric": "reading.late", "across": "speed", "at_most": 0.05,
+      "basis": "requirement", "reason": "Slow enough." },
+    { "id": "grows", "statistic": "least_ratio", "metric": "reading.early", "across": "speed", "at_least": 1,
+      "basis": "theory", "reason": "Waves." }])");
+  return text;
+}
+
+TEST(CaseFile, reads_gates_on_series_of_any_kind) {
+  const Case read = parsed(strip_at_speeds());
+  ASSERT_EQ(read.gates.size(), 3u);
+  EXPECT_EQ(read.gates[0].statistic, Statistic::curve_spread);
+  EXPECT_EQ(read.gates[0].metric, "");
+  EXPECT_EQ(read.gates[0].curve, "pressure");
+  EXPECT_EQ(read.gates[0].across, "speed");
+  EXPECT_EQ(read.gates[0].from, 0.0001);
+  EXPECT_EQ(read.gates[0].up_to, 0.0019);
+  EXPECT_EQ(read.gates[0].within, 0.00005);
+  EXPECT_EQ(read.gates[1].statistic, Statistic::spread);
+  EXPECT_EQ(read.gates[1].curve, "");
+  EXPECT_FALSE(read.gates[1].from || read.gates[1].up_to);
+  EXPECT_EQ(read.gates[2].statistic, Statistic::least_ratio);
+}
+
+TEST(CaseFile, needs_three_falling_cell_sizes_for_the_uncertainty_of_the_discretisation) {
+  Json text = valid_case();
+  text["gates"][2]["statistic"] = "discretisation_uncertainty";
+  EXPECT_EQ(parsed(text).gates[2].statistic, Statistic::discretisation_uncertainty);
+  EXPECT_FALSE(schema_violation(text));
+  text["gates"][2]["where"] = Json::parse(R"({ "/scene/grid/cell_size": ["0.1 m", "0.05 m"] })");
+  expect_message(refusal_of(text.dump()), "column.json", "/gates/2/across", "at least 3 selected values",
+                 "which has 2");
+  text = strip_at_speeds();
+  text["gates"][1]["statistic"] = "discretisation_uncertainty";
+  expect_message(refusal_of(text.dump()), "column.json", "/gates/1/across",
+                 "makes the cell size smaller from each value to the next", "\"speed\"");
+  text["gates"][1].erase("across");
+  EXPECT_TRUE(schema_violation(text));
+}
+
+TEST(CaseFile, says_which_comparison_of_a_series_is_wrong_and_where) {
+  struct Wrong {
+    const char *patch, *pointer, *expected, *found;
+    bool schema_refuses;
+  };
+  const std::vector<Wrong> all = {
+      {R"([{"op": "add", "path": "/gates/0/metric", "value": "reading.late"}])", "/gates/0/metric",
+       "one of the keys id, curve, from, up_to, within, statistic", "\"metric\"", true},
+      {R"([{"op": "remove", "path": "/gates/0/curve"}])", "/gates/0/curve", "pressure", "nothing", true},
+      {R"([{"op": "replace", "path": "/gates/0/curve", "value": "load"}])", "/gates/0/curve", "pressure",
+       "\"load\"", true},
+      {R"([{"op": "remove", "path": "/gates/0/across"}])", "/gates/0/across", "a swept parameter (speed)",
+       "nothing", true},
+      {R"([{"op": "replace", "path": "/gates/0/up_to", "value": "0.1 mm"}])", "/gates/0/up_to",
+       "an end beyond where the stretch begins", "\"0.1 mm\"", false},
+      {R"([{"op": "replace", "path": "/gates/0/from", "value": 1}])", "/gates/0/from", "a length such as",
+       "1", false},
+      {R"([{"op": "replace", "path": "/gates/0/within", "value": "0 m"}])", "/gates/0/within",
+       "a half-width above zero", "\"0 m\"", true},
+      {R"([{"op": "remove", "path": "/gates/1/metric"}])", "/gates/1/metric", "one of ", "nothing", true},
+      {R"([{"op": "add", "path": "/gates/1/curve", "value": "pressure"}])", "/gates/1/curve",
+       "one of the keys id, metric, statistic", "\"curve\"", true},
+      {R"([{"op": "add", "path": "/gates/1/up_to", "value": "1 mm"}])", "/gates/1/up_to",
+       "one of the keys id, metric, statistic", "\"up_to\"", true},
+      {R"([{"op": "replace", "path": "/gates/1/statistic", "value": "last_order"}])", "/gates/1/across",
+       "makes the cell size smaller from each value to the next", "\"speed\"", false},
+      {R"([{"op": "add", "path": "/gates/2/where", "value": {"speed": ["half"]}}])", "/gates/2/across",
+       "at least 2 selected values", "which has 1", false},
+  };
+  EXPECT_FALSE(schema_violation(strip_at_speeds()));
+  for (const Wrong& wrong : all) {
+    SCOPED_TRACE(wrong.patch);
+    const Json text = strip_at_speeds().patch(Json::parse(wrong.patch));
+    expect_message(refusal_of(text.dump()), "column.json", wrong.pointer, wrong.expected, wrong.found);
+    EXPECT_EQ(schema_violation(text).has_value(), wrong.schema_refuses);
+  }
+}
+
 TEST(CaseFile, says_which_reading_is_wrong_and_where) {
   struct Wrong {
     const char *patch, *pointer, *expected, *found;

@@ -114,5 +114,85 @@ TEST(Reading, IsAMetricOfTheCatalogueKind) {
   EXPECT_EQ(metric_of(reading(1.0, 0.0, "hencky")).reference, "hencky");
 }
 
+// ---- curves against each other ----
+
+ReadOff spread_of(const std::vector<Curve>& curves, const Stretch& stretch = {}, double within = 0.0) {
+  std::vector<const Curve*> each;
+  for (const Curve& one : curves) each.push_back(&one);
+  return curve_spread(each, stretch, within);
+}
+
+Curve line(double end, double slope) {
+  return sampled(end, 40, [=](double x) { return slope * x; });
+}
+
+TEST(CurveSpread, IsTheLargestDifferenceOverTheLargestMean) {
+  // At 2 the lines are 2, 4 and 6: 4 apart around a mean of 4.
+  EXPECT_NEAR(spread_of({line(2.0, 1.0), line(2.0, 3.0), line(2.0, 2.0)}).value, 1.0, 1e-12);
+  // A bump between the samples of neither end: 1 apart where the mean is 2 + 1/2, its largest.
+  const Curve flat = curve({0.0, 4.0}, {2.0, 2.0});
+  const Curve bump = curve({0.0, 1.0, 2.0, 3.0, 4.0}, {2.0, 2.0, 3.0, 2.0, 2.0});
+  EXPECT_NEAR(spread_of({flat, bump}).value, 1.0 / 2.5, 0.01) << "to half a step of the grid";
+  const Curve below = curve({0.0, 4.0}, {-2.0, -2.0});
+  EXPECT_NEAR(spread_of({below, curve({0.0, 4.0}, {-6.0, -6.0})}).value, 1.0, 1e-12)
+      << "magnitude of the mean";
+  EXPECT_EQ(spread_of({flat, flat}).value, 0.0);
+}
+
+TEST(CurveSpread, ComparesTheStretchAsked) {
+  const std::vector<Curve> curves = {line(2.0, 1.0),
+                                     sampled(2.0, 40, [](double x) { return x < 0.99 ? 5.0 : x; })};
+  EXPECT_GT(spread_of(curves).value, 1.0);
+  EXPECT_NEAR(spread_of(curves, {.from = 1.0, .up_to = {}}).value, 0.0, 1e-12);
+  EXPECT_NEAR(spread_of(curves, {.from = {}, .up_to = 0.5}).value, 5.0 / 2.75, 1e-12);
+}
+
+TEST(CurveSpread, IsNotMeasuredWhereOneCurveBreaksOff) {
+  EXPECT_EQ(spread_of({line(2.0, 1.0), line(1.905, 1.0)}).lack, "");
+  const ReadOff broken = spread_of({line(2.0, 1.0), line(1.895, 1.0), line(1.99, 1.0)});
+  EXPECT_TRUE(std::isnan(broken.value));
+  EXPECT_EQ(broken.of, 1u);
+  EXPECT_EQ(broken.lack, "the curve pressure goes from 0 to 1.895 m: the curves have only 94.8 % in common");
+  EXPECT_EQ(spread_of({line(2.0, 1.0), line(0.5, 1.0)}, {.from = {}, .up_to = 0.4}).lack, "");
+  // The part before `from` is not compared, so it does not count for what is in common.
+  EXPECT_EQ(spread_of({line(2.0, 1.0), line(1.905, 1.0)}, {.from = 1.0, .up_to = {}}).of, 1u);
+  EXPECT_NE(spread_of({line(2.0, 1.0), line(1.905, 1.0)}, {.from = 1.0, .up_to = {}}).lack, "");
+}
+
+TEST(CurveSpread, IsNotMeasuredWhereOneCurveBeginsLate) {
+  const Curve late = curve({0.2, 2.0}, {0.2, 2.0});
+  const ReadOff apart = spread_of({late, line(2.0, 1.0)});
+  EXPECT_EQ(apart.of, 0u);
+  EXPECT_EQ(apart.lack, "the curve pressure goes from 0.2 to 2 m: the curves have only 90.0 % in common");
+  EXPECT_NEAR(spread_of({late, line(2.0, 1.0)}, {.from = 0.2, .up_to = {}}).value, 0.0, 1e-12);
+}
+
+TEST(CurveSpread, IsNotMeasuredWhereACurveDoesNotReachTheStretchAsked) {
+  const ReadOff early = spread_of({line(2.0, 1.0), line(1.0, 1.0)}, {.from = {}, .up_to = 1.5});
+  EXPECT_EQ(early.of, 1u);
+  EXPECT_EQ(early.lack, "the curve pressure goes from 0 to 1 m and does not reach 1.5 m");
+  EXPECT_FALSE(spread_of({line(2.0, 1.0), line(2.0, 1.0)}, {.from = -0.1, .up_to = {}}).lack.empty());
+  const Curve elsewhere = curve({3.0, 4.0}, {1.0, 1.0});
+  EXPECT_FALSE(spread_of({line(2.0, 1.0), elsewhere}).lack.empty());
+  EXPECT_FALSE(spread_of({line(2.0, 1.0), curve({}, {})}).lack.empty());
+  const Curve nothing = curve({0.0, 2.0}, {0.0, 0.0});
+  EXPECT_FALSE(spread_of({nothing, nothing}).lack.empty()) << "nothing to relate the difference to";
+}
+
+TEST(CurveSpread, LooksAtMovingMeansWhereAsked) {
+  const auto saw = [](double sign) {
+    Curve teeth = curve({}, {});
+    for (int k = 0; k <= 200; ++k) {
+      teeth.x.push_back(0.01 * k);
+      teeth.y.push_back(10.0 + sign * (k % 2 == 0 ? 1.0 : -1.0));
+    }
+    return teeth;
+  };
+  const std::vector<Curve> curves = {saw(1.0), saw(-1.0)};
+  EXPECT_GT(spread_of(curves).value, 0.19);
+  EXPECT_LT(spread_of(curves, {}, 0.2).value, 0.02) << "means of about forty samples, at the ends of twenty";
+  EXPECT_FALSE(spread_of(curves, {}, 0.001).lack.empty()) << "no two samples are that near";
+}
+
 }  // namespace
 }  // namespace mpm::vv

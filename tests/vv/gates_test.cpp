@@ -272,6 +272,160 @@ GateResult worst_ratio_of(const std::vector<double>& values) {
   return judge_case(definition, records, by_size).series.at(0).gates.at(0);
 }
 
+/// A statistic of a series of runs that differ in a named setting only, in the order of the sweep.
+GateResult result_over_settings(Statistic statistic, const std::vector<double>& values) {
+  Case definition;
+  std::vector<Record> records(values.size());
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    definition.runs.push_back(request(0.1, "cpgimp"));
+    definition.runs.back().parameters[0] = {"setting", "variant " + std::to_string(k)};
+  }
+  Gate applied = series_gate(statistic, Comparison::at_least, 1.0);
+  applied.across = "setting";
+  definition.gates = {applied};
+  std::size_t next = 0;
+  const Judge in_turn = [&](const Case&, const RunRequest&, const Record&) {
+    return Judgement{{{"error", values.at(next++)}}, {}};
+  };
+  return judge_case(definition, records, in_turn).series.at(0).gates.at(0);
+}
+
+TEST(SeriesStatistic, LeastRatioIsTheSmallestStep) {
+  const GateResult growing = result_over_settings(Statistic::least_ratio, {1.0, 2.0, 2.2, 4.4});
+  EXPECT_NEAR(growing.value, 1.1, 1e-12);
+  EXPECT_EQ(growing.status, GateStatus::pass);
+  EXPECT_EQ(growing.statistic, "least_ratio");
+  EXPECT_EQ(growing.scope, "cpgimp, 4 values of setting");
+  const GateResult falling = result_over_settings(Statistic::least_ratio, {1.0, 0.9, 5.0});
+  EXPECT_NEAR(falling.value, 0.9, 1e-12) << "runs with cells of one size keep the order of the sweep";
+  EXPECT_EQ(falling.status, GateStatus::fail);
+  EXPECT_NEAR(result_over_settings(Statistic::least_ratio, {4.0, 2.0, 1.0, 3.0}).value, 0.5, 1e-12);
+  EXPECT_TRUE(std::isnan(result_over_settings(Statistic::least_ratio, {1.0, 0.0, 0.0, 1.0}).value));
+  EXPECT_TRUE(std::isnan(result_over_settings(Statistic::least_ratio, {0.0, 0.0, 1.0}).value));
+}
+
+TEST(SeriesStatistic, SpreadIsTheRangeOverTheMean) {
+  EXPECT_NEAR(result_over_settings(Statistic::spread, {2.0, 5.0, 3.0, 2.0}).value, 1.0, 1e-12);
+  EXPECT_NEAR(result_over_settings(Statistic::spread, {-1.0, -3.0}).value, 1.0, 1e-12);
+  EXPECT_EQ(result_over_settings(Statistic::spread, {2.0, 2.0}).value, 0.0);
+  EXPECT_TRUE(std::isnan(result_over_settings(Statistic::spread, {-1.0, 1.0}).value));
+}
+
+/// 7 + h at 0.4, 0.2 and 0.1, and what is no number where cells are of size 0.2.
+Judgement first_order(const Case&, const RunRequest& of, const Record&) {
+  const double size = of.scene.cell_size;
+  return {{{"error", 7.0 + size},
+           {"reading.late", 7.0 + size},
+           {"load_curve.peak", size == 0.2 ? 9.0 : 7.0},
+           {"reading.constant", 0.0}},
+          {}};
+}
+
+TEST(SeriesStatistic, DiscretisationUncertaintyIsOfTheFinestLevel) {
+  const Gate applied = series_gate(Statistic::discretisation_uncertainty, Comparison::at_most, 0.02);
+  const GateResult result = series_result(applied, std::vector<Record>(6), first_order);
+  EXPECT_NEAR(result.value, 1.25 * 0.1 / 7.1, 1e-9);
+  EXPECT_EQ(result.statistic, "discretisation_uncertainty");
+  EXPECT_EQ(result.status, GateStatus::pass);
+  EXPECT_EQ(result.detail, "grid convergence index at the observed order 1.00");
+  Gate of_none = applied;
+  of_none.metric = "reading.constant";
+  const GateResult none = series_result(of_none, std::vector<Record>(6), first_order);
+  EXPECT_EQ(none.status, GateStatus::fail);
+  EXPECT_TRUE(std::isnan(none.value));
+  Gate short_series = applied;
+  short_series.where.push_back({cells, {0.4, 0.2}});
+  EXPECT_EQ(series_result(short_series, std::vector<Record>(6), first_order).detail.substr(0, 21),
+            "it takes three levels");
+}
+
+TEST(Series, KnowsWhereReadingsAndLoadCurvesConverge) {
+  Case definition = refinement();
+  definition.gates = {series_gate(Statistic::reduction, Comparison::at_least, 1)};
+  CampaignVerdict campaign;
+  campaign.cases = {judge_case(definition, std::vector<Record>(6), first_order)};
+  const auto& convergence = campaign.cases[0].series.at(1).convergence;
+  EXPECT_FALSE(convergence.contains("error")) << "an error goes to zero: it has orders, and no other limit";
+  EXPECT_FALSE(convergence.contains("reading.constant"));
+  EXPECT_NEAR(convergence.at("reading.late").extrapolated, 7.0, 1e-9);
+  EXPECT_NEAR(convergence.at("load_curve.peak").uncertainty, 2.0 / 7.0, 1e-12);
+  const Json json = Json::parse(to_json(campaign).dump())["cases"][0]["series"][1]["convergence"];
+  EXPECT_EQ(json.size(), 2u);
+  EXPECT_NEAR(json["reading.late"]["order"].get<double>(), 1.0, 1e-9);
+  EXPECT_NEAR(json["reading.late"]["extrapolated"].get<double>(), 7.0, 1e-9);
+  EXPECT_NEAR(json["reading.late"]["uncertainty"].get<double>(), 0.125 / 7.1, 1e-9);
+  EXPECT_EQ(json["reading.late"]["monotone"], true);
+  EXPECT_EQ(json["reading.late"]["method"], "grid convergence index at the observed order 1.00");
+  EXPECT_EQ(json["load_curve.peak"]["monotone"], false);
+  EXPECT_TRUE(json["load_curve.peak"]["order"].is_null());
+  EXPECT_TRUE(json["load_curve.peak"]["extrapolated"].is_null());
+}
+
+TEST(Series, HasNoConvergenceWithoutThreeSizesOfCells) {
+  Case definition = refinement();
+  definition.gates = {series_gate(Statistic::reduction, Comparison::at_least, 1)};
+  for (RunRequest& run : definition.runs)
+    if (run.scene.cell_size == 0.1) run.scene.cell_size = 0.2;
+  EXPECT_TRUE(judge_case(definition, std::vector<Record>(6), first_order).series.at(1).convergence.empty());
+}
+
+/// Lines of slope 1 / cell size up to these ends, coarse to fine; no curve where the end is 0.
+GateResult curve_result(const Gate& applied, const std::vector<double>& ends, std::vector<Record> records) {
+  Case definition;
+  for (std::size_t k = 0; k < ends.size(); ++k)
+    definition.runs.push_back(request(1.0 / static_cast<double>(k + 1), "cpgimp"));
+  definition.gates = {applied};
+  std::size_t next = 0;
+  const Judge in_turn = [&](const Case&, const RunRequest& of, const Record&) {
+    Judgement judgement;
+    if (const double end = ends.at(next++); end > 0.0)
+      judgement.curves = {{"pressure", "run", {0.0, end}, {0.0, end / of.scene.cell_size}, "settlement"}};
+    return judgement;
+  };
+  return judge_case(definition, std::move(records), in_turn).series.at(0).gates.at(0);
+}
+
+Gate curve_gate() {
+  Gate made = series_gate(Statistic::curve_spread, Comparison::at_most, 1.5);
+  made.metric.clear();
+  made.curve = "pressure";
+  return made;
+}
+
+TEST(SeriesStatistic, CurveSpreadComparesTheCurvesOfTheRuns) {
+  const GateResult result = curve_result(curve_gate(), {2.0, 2.0, 1.99}, std::vector<Record>(3));
+  EXPECT_NEAR(result.value, 1.0, 1e-12);
+  EXPECT_EQ(result.status, GateStatus::pass);
+  EXPECT_EQ(result.metric, "pressure");
+  EXPECT_EQ(result.statistic, "curve_spread");
+  EXPECT_EQ(result.scope, "cpgimp, 3 values of cell size");
+}
+
+TEST(SeriesStatistic, CurveSpreadIsRedWhereACurveBreaksOffOrLacks) {
+  std::vector<Record> records(3);
+  const GateResult completed_short = curve_result(curve_gate(), {2.0, 1.0, 2.0}, records);
+  EXPECT_EQ(completed_short.status, GateStatus::fail);
+  EXPECT_EQ(completed_short.detail,
+            "h 0.5, cpgimp: the curve pressure goes from 0 to 1 m: the curves have only 50.0 % in common");
+  EXPECT_EQ(curve_result(control(curve_gate()), {2.0, 1.0, 2.0}, records).status, GateStatus::fail);
+  EXPECT_EQ(curve_result(curve_gate(), {2.0, 2.0, 0.0}, records).detail.substr(0, 14), "h 0.3333333333");
+  Gate limited = curve_gate();
+  limited.up_to = 1.0;
+  EXPECT_NEAR(curve_result(limited, {2.0, 1.0, 2.0}, records).value, 1.0, 1e-12);
+
+  records[1] = ended_early();
+  const GateResult broken = curve_result(curve_gate(), {2.0, 1.0, 2.0}, records);
+  EXPECT_EQ(broken.status, GateStatus::fail);
+  EXPECT_NE(broken.detail.find("run ended outside_grid"), std::string::npos);
+  EXPECT_NE(broken.detail.find("the curves have only"), std::string::npos);
+  EXPECT_EQ(curve_result(control(curve_gate()), {2.0, 1.0, 2.0}, records).status,
+            GateStatus::red_as_expected);
+  EXPECT_EQ(curve_result(control(curve_gate()), {2.0, 0.0, 0.0}, records).status, GateStatus::fail)
+      << "the last run completed and has no excuse";
+  EXPECT_NEAR(curve_result(curve_gate(), {2.0, 1.95, 2.0}, records).value, 1.0, 1e-12)
+      << "far enough is far enough, however the run ended";
+}
+
 TEST(SeriesStatistic, WorstRatioThatIsNoNumberSomewhereIsNoNumber) {
   EXPECT_NEAR(worst_ratio_of({1.0, 0.5, 0.45, 0.1}).value, 0.9, 1e-12);
   // 0/0 first, in the middle and last; what follows a zero can fall again by way of minus infinity only.
@@ -332,7 +486,8 @@ TEST(SeriesStatistic, ControlFailsWhenAnyMissingValueHasNoExcuse) {
 }
 
 TEST(SeriesStatistic, IsRedWhenItIsNoNumber) {
-  for (Statistic statistic : {Statistic::reduction, Statistic::worst_ratio, Statistic::last_order}) {
+  for (Statistic statistic : {Statistic::reduction, Statistic::worst_ratio, Statistic::last_order,
+                              Statistic::least_ratio, Statistic::spread}) {
     Gate applied = series_gate(statistic, Comparison::at_least, 0.0);
     applied.metric = "zero";
     const GateResult result = series_result(applied);
