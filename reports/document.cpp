@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 #include <string_view>
@@ -12,6 +13,7 @@
 #include "reports/figures.hpp"
 #include "reports/page_data.hpp"
 #include "reports/performance_section.hpp"
+#include "vv/curves.hpp"
 #include "vv/norms.hpp"
 
 namespace mpm::reports {
@@ -198,19 +200,48 @@ data gate_groups(const std::vector<PlacedGate>& gates, bool controls) {
   return groups;
 }
 
-/// "smooth 7/7", one entry a gate.
-data gate_tallies(const std::vector<PlacedGate>& gates) {
+/// "at most 0.5", or what a control has to violate: "not at most 0.5".
+std::string bound_of(const vv::GateResult& gate) {
+  const std::string comparison = gate.op == "<=" ? "at most " : gate.op == ">=" ? "at least " : gate.op + " ";
+  return (gate.must_fail ? "not " : "") + escaped(comparison) + number_markup(gate.threshold, 0);
+}
+
+/// "0.31 … 0.44", or the one value there is; "–" without any.
+std::string range_of(const std::vector<const vv::GateResult*>& results) {
+  double least = std::numeric_limits<double>::infinity(), most = -least;
+  for (const vv::GateResult* result : results) {
+    if (!std::isfinite(result->value)) continue;
+    least = std::min(least, result->value);
+    most = std::max(most, result->value);
+  }
+  if (least > most) return "–";
+  const std::string lower = number_markup(least), upper = number_markup(most);
+  return lower == upper ? lower : lower + " … " + upper;
+}
+
+/// One entry a gate: "smooth 7/7", what was measured, and what was asked for.
+data gate_tallies(const std::vector<PlacedGate>& gates, const vv::Case& definition) {
   std::vector<std::string> ids;
-  std::map<std::string, std::pair<int, int>> tally;
+  std::map<std::string, std::vector<const vv::GateResult*>> by_id;
   for (const PlacedGate& gate : gates) {
-    auto& [good, all] = tally[gate.result->id];
-    if (all == 0) ids.push_back(gate.result->id);
-    good += gate.result->good();
-    ++all;
+    std::vector<const vv::GateResult*>& results = by_id[gate.result->id];
+    if (results.empty()) ids.push_back(gate.result->id);
+    results.push_back(gate.result);
   }
   data tallies = list();
-  for (const std::string& id : ids)
-    tallies << object({{"id", id}, {"tally", fmt::format("{}/{}", tally[id].first, tally[id].second)}});
+  for (const std::string& id : ids) {
+    const std::vector<const vv::GateResult*>& results = by_id[id];
+    const auto good = std::count_if(results.begin(), results.end(), [](const auto* r) { return r->good(); });
+    const auto unmeasured =
+        std::count_if(results.begin(), results.end(), [](const auto* r) { return !std::isfinite(r->value); });
+    tallies << object(
+        {{"id", id},
+         {"tally", fmt::format("{}/{}", good, results.size())},
+         {"metric", name_of_metric(results.front()->metric, definition) + statistic_of(*results.front())},
+         {"range", range_of(results)},
+         {"bound", bound_of(*results.front())},
+         {"unmeasured", unmeasured > 0 ? std::to_string(unmeasured) : ""}});
+  }
   return tallies;
 }
 
@@ -244,6 +275,7 @@ std::string table_title(const std::string& table) {
   if (table.empty()) return "Other measures";
   const bool is_reference = name_of_reference(table) != escaped(table);
   if (is_reference) return "Against " + name_of_reference(table);
+  if (table + "." == vv::reading_prefix) return "Readings";
   if (table == "floor") return "Model-form floor, Zhang − Hencky";
   std::string title = table;
   title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
@@ -251,7 +283,12 @@ std::string table_title(const std::string& table) {
 }
 
 /// The column's head inside its table: the metric without the table's name.
-std::string column_title(const std::string& metric) {
+std::string column_title(const std::string& metric, const vv::Case& definition) {
+  for (const vv::Reading& reading : definition.readings)
+    if (metric == vv::reading_prefix + reading.id) {
+      const std::string own_unit = vv::metric_of(reading).unit;
+      return escaped(reading.title) + (own_unit == "-" ? "" : " [" + escaped(own_unit) + "]");
+    }
   const std::size_t dot = metric.find('.');
   std::string rest = dot == std::string::npos ? metric : metric.substr(dot + 1);
   std::string unit;
@@ -288,7 +325,7 @@ data metric_tables(const vv::CaseVerdict& verdict) {
   for (const std::string& name : names) {
     data table = object({{"title", table_title(name)}});
     std::vector<std::string> heads;
-    for (const std::string& metric : tables[name]) heads.push_back(column_title(metric));
+    for (const std::string& metric : tables[name]) heads.push_back(column_title(metric, verdict.definition));
     table.set("columns", text_cells(heads));
     data rows = list();
     for (const vv::RunVerdict& run : verdict.runs) {
@@ -324,7 +361,20 @@ data run_rows(const vv::CaseVerdict& verdict) {
   return rows;
 }
 
-/// Metrics of a refinement: errors, not counts.
+bool is_reading(const std::string& metric) { return metric.starts_with(vv::reading_prefix); }
+
+/// The value for cells without size and how far off the finest may be: "12.3; ±4.2 %"; "–" for an error,
+/// which goes to zero.
+std::string limit_of(const vv::SeriesVerdict& series, const std::string& metric) {
+  const auto found = series.convergence.find(metric);
+  if (found == series.convergence.end()) return "–";
+  const vv::GridConvergence& convergence = found->second;
+  const std::string extrapolated =
+      std::isfinite(convergence.extrapolated) ? number_markup(convergence.extrapolated) : "none";
+  return extrapolated + "; ±" + number_markup(100.0 * convergence.uncertainty, 2) + " %";
+}
+
+/// Metrics of a refinement: errors and readings, not counts.
 data series_tables(const vv::CaseVerdict& verdict) {
   data tables = list();
   for (const vv::SeriesVerdict& series : verdict.series) {
@@ -341,11 +391,14 @@ data series_tables(const vv::CaseVerdict& verdict) {
       for (const double value : found->second) values.push_back(number_markup(value));
       const auto orders = series.orders.find(metric);
       data row = object({{"metric", metric},
-                         {"orders", orders == series.orders.end() ? "–" : orders_markup(orders->second)}});
+                         {"title", is_reading(metric) ? name_of_metric(metric, verdict.definition) : ""},
+                         {"orders", orders == series.orders.end() ? "–" : orders_markup(orders->second)},
+                         {"limit", limit_of(series, metric)}});
       row.set("values", text_cells(values));
       rows << row;
     }
     table.set("rows", rows);
+    table.set("has_limits", flag(!series.convergence.empty()));
     tables << table;
   }
   return tables;
@@ -435,18 +488,18 @@ std::string chip_of(const vv::Claim& claim, const std::vector<PlacedGate>& evide
     return std::any_of(evidence.begin(), evidence.end(),
                        [&](const PlacedGate& gate) { return gate.result->id == id; });
   });
-  if (claim.finding == vv::Finding::untested) return chip("open", "NOT TESTED");
+  if (claim.finding == vv::Finding::untested) return chip("open", "not tested");
   if (evidence.empty() || !complete) return chip("open", "NOT MEASURED");
   if (!std::all_of(evidence.begin(), evidence.end(), is_good)) return chip("fail", "IN DOUBT");
   switch (claim.finding) {
     case vv::Finding::seen:
-      return chip("pass", "SEEN");
+      return chip("pass", "holds");
     case vv::Finding::not_seen:
-      return chip("contrary", "NOT SEEN");
+      return chip("contrary", "not seen");
     case vv::Finding::untested:
       break;
     case vv::Finding::depends:
-      return chip("contrary", "DEPENDS");
+      return chip("contrary", "holds in part");
   }
   return chip("fail", "UNKNOWN");
 }
@@ -463,7 +516,7 @@ data claim_row(const vv::Claim& claim, const vv::CaseVerdict& verdict) {
                      {"text", claim.text},
                      {"remark", claim.remark},
                      {"chip", chip_of(claim, evidence)}});
-  row.set("gates", gate_tallies(evidence));
+  row.set("gates", gate_tallies(evidence, verdict.definition));
   return row;
 }
 

@@ -28,9 +28,11 @@ constexpr double view_margin = 0.02;  // of the larger side, around what must be
 constexpr double overlap = 0.12;      // of a particle on every side: gaps narrower than a pixel do not show
 constexpr double readable_frame = 110.0;  // wide enough for what a field shows
 constexpr double axis_label_gap = 6.0;    // between tick labels and the label of the vertical axis
+constexpr double hatch_pitch = 6.0;       // of a frame that cannot be filled
 constexpr int bar_slices = 256;
 
 const Color frame_color{0.45, 0.45, 0.45, 1.0};
+const Color hatch_color{0.84, 0.84, 0.84, 1.0};
 const Color empty_color{0.96, 0.96, 0.96, 1.0};
 
 /// What is seen [m].
@@ -241,12 +243,22 @@ bool fits_in_frame(const Rectangle& box, const std::string& note) {
 }
 
 /// The note in the middle of the frame.
-void write_in_frame(Canvas& canvas, const Rectangle& box, const std::string& note, Layout::Panel& layout) {
+void write_in_frame(Canvas& canvas, const Rectangle& box, const std::string& note, bool hatched,
+                    Layout::Panel& layout) {
   const TextStyle style = frame_note_style(box);
   const TextExtent extent = Canvas::measure(note, style);
   const Point middle = box.center();
   const double half_width = extent.width / 2, half_height = extent.height() / 2;
-  canvas.rectangle(box, empty_color);
+  canvas.rectangle(box, hatched ? white : empty_color);
+  if (hatched) {
+    canvas.clip(box);
+    for (double x = box.left - box.height(); x < box.right; x += hatch_pitch)
+      canvas.line({{x, box.bottom}, {x + box.height(), box.top}}, {hatch_color, 0.6, {}});
+    canvas.unclip();
+    canvas.rectangle({middle.x - half_width - 4.0, middle.y - half_height - 2.0, middle.x + half_width + 4.0,
+                      middle.y + half_height + 2.0},
+                     white);
+  }
   canvas.text({middle.x, middle.y - half_height}, note, style);
   layout.annotations.push_back(
       {middle.x - half_width, middle.y - half_height, middle.x + half_width, middle.y + half_height});
@@ -404,7 +416,7 @@ Layout::Panel draw_panel(Canvas& canvas, const Sheet& sheet, const FieldPlot& pl
   if (panel.map)
     draw_particles(canvas, frame, *panel.map, plot.scale, layout);
   else
-    write_in_frame(canvas, frame.box, sheet.frame_notes[number], layout);
+    write_in_frame(canvas, frame.box, sheet.frame_notes[number], panel.hatched, layout);
   draw_box(canvas, frame.box, frame_color);
   draw_axes(canvas, frame, grid.row_ticks, number + grid.columns >= plot.panels.size(),
             number % grid.columns == 0);

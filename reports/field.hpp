@@ -24,7 +24,8 @@ struct ColorScale {
 struct FieldPanel {
   std::string title;  ///< markup; may be empty
   std::optional<vv::FieldMap> map;
-  std::string note;  ///< markup, set in the frame when there is no map
+  std::string note;      ///< markup, set in the frame when there is no map
+  bool hatched = false;  ///< the frame, when there is no map: nobody could have drawn one
 };
 
 /// Small multiples: every panel has the same view at equal aspect and the same colour scale.

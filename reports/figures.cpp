@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -10,6 +11,8 @@
 #include <set>
 #include <stdexcept>
 
+#include "reports/typography.hpp"
+#include "vv/curves.hpp"
 #include "vv/norms.hpp"
 
 namespace mpm::reports {
@@ -20,6 +23,7 @@ using Parameters = std::vector<std::pair<std::string, vv::Json>>;
 constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
 constexpr double profile_margin = 0.12;  // of the reference's range, on either side
 constexpr double tame_ratio = 30.0;      // an extreme beyond this times the next tamer one is off the axis
+constexpr std::size_t many_series = 6;   // a lone panel with more takes the whole width
 constexpr double largest_error_shown = 10.0;  // relative errors above 1000 % say no more than "wrong"
 
 const Color floor_color{0.45, 0.45, 0.45, 1.0};
@@ -130,6 +134,9 @@ constexpr Named reference_names[] = {
     {"free_fall", "free fall, exact motion", "free fall"},
     {"rotation", "rigid rotation, exact stress", "rigid rotation"},
     {"closed_form", "closed form", "the closed form"},
+    {"terzaghi", "Terzaghi, surface", "Terzaghi"},
+    {"embedded_limit", "limit analysis, current embedment", "limit analysis at the current embedment"},
+    {"elastic_layer", "elastic layer", "the elastic layer"},
 };
 
 constexpr std::pair<const char*, const char*> metric_names[] = {
@@ -300,6 +307,11 @@ const vv::Curve* curve_of(const vv::RunVerdict& run, const std::string& name, co
   for (const vv::Curve& curve : run.curves)
     if (curve.name == name && curve.source == source) return &curve;
   return nullptr;
+}
+
+double metric_of(const vv::RunVerdict& run, const std::string& metric) {
+  const auto found = run.metrics.find(metric);
+  return found == run.metrics.end() ? nan_value : found->second;
 }
 
 /// "<i>h</i> = 20 mm" and "<i>h</i> = 10 mm" make "<i>h</i> = 20, 10 mm".
@@ -689,6 +701,18 @@ struct Line {
   int layer = 0;
 };
 
+/// The member that alone has a curve like this; null if several have.
+const Member* only_owner(const std::vector<Member>& members, const vv::Curve& curve) {
+  const Member* owner = nullptr;
+  for (const Member& member : members) {
+    const vv::Curve* own = curve_of(*member.run, curve.name, curve.source);
+    if (!own || !are_alike(*own, curve)) continue;
+    if (owner) return nullptr;
+    owner = &member;
+  }
+  return owner;
+}
+
 std::vector<Line> lines_of(const std::vector<Member>& members, const vv::FigureRequest& request) {
   std::vector<Line> lines;
   for (const Member& member : members)
@@ -697,10 +721,90 @@ std::vector<Line> lines_of(const std::vector<Member>& members, const vv::FigureR
       lines.push_back({curve, member.series, look, layer_of(look)});
     }
   const std::vector<std::string> references = references_of(members, request);
-  for (std::size_t i = 0; i < references.size(); ++i)
-    for (const vv::Curve* curve : reference_curves(members, request.quantity, references[i]))
-      lines.push_back({curve, name_of_reference(references[i]), dashed_reference_look(i), 3});
+  for (std::size_t i = 0; i < references.size(); ++i) {
+    const std::vector<const vv::Curve*> curves = reference_curves(members, request.quantity, references[i]);
+    for (const vv::Curve* curve : curves) {
+      Look look = dashed_reference_look(i);
+      const Member* owner = curves.size() > 1 ? only_owner(members, *curve) : nullptr;
+      if (owner) look.color = line_look(*owner).color;
+      lines.push_back({curve, name_of_reference(references[i]), look, 3});
+    }
+  }
   return lines;
+}
+
+Look mark_look(MarkerShape shape, double size, const Color& color) {
+  Look look;
+  look.color = color;
+  look.marker = shape;
+  look.marker_size = size;
+  look.filled = true;
+  return look;
+}
+
+/// Two metrics that together are a place on a load curve.
+struct Bend {
+  const char *settlement, *pressure;
+  std::size_t order;  ///< 0 the first of its curve, 1 the second
+};
+
+/// The bends a curve was found to have: of three straight pieces two, of two pieces one, of one piece none.
+std::vector<Bend> bends_of(const vv::RunVerdict& run) {
+  const double phases = metric_of(run, "load_curve.phases");
+  const Bend only{"load_curve.bend_settlement", "load_curve.bend_pressure", 0},
+      first{"load_curve.first_bend_settlement", "load_curve.first_bend_pressure", 0},
+      second{"load_curve.second_bend_settlement", "load_curve.second_bend_pressure", 1};
+  if (phases < 1.5) return {};
+  if (phases > 2.5) return {first, second};
+  return {only};
+}
+
+/// Marks the bends of the curves where the metrics say they are; the axes are in their units already.
+void mark_bends(Panel& panel, const std::vector<Member>& members, double settlement_factor,
+                double pressure_factor) {
+  const auto look = [](std::size_t order, const Color& color) {
+    return order == 0 ? mark_look(MarkerShape::circle, 5.4, color)
+                      : mark_look(MarkerShape::triangle, 4.6, color);
+  };
+  std::array<bool, 2> any{};
+  for (const Member& member : members)
+    for (const Bend& bend : bends_of(*member.run)) {
+      const double settlement = metric_of(*member.run, bend.settlement),
+                   pressure = metric_of(*member.run, bend.pressure);
+      if (!std::isfinite(settlement) || !std::isfinite(pressure)) continue;
+      any[bend.order] = true;
+      panel.curves.push_back({"",
+                              look(bend.order, line_look(member).color),
+                              {pressure * pressure_factor},
+                              {settlement * settlement_factor},
+                              4});
+    }
+  if (any[0]) panel.curves.push_back({"bend", look(0, ink), {}, {}, 0});
+  if (any[1]) panel.curves.push_back({"second bend", look(1, ink), {}, {}, 0});
+}
+
+/// 1 is "(i)"; numbers beyond ten are written in digits.
+std::string stage_label(std::size_t number) {
+  static constexpr const char* numerals[] = {"i", "ii", "iii", "iv", "v", "vi", "vii", "viii", "ix", "x"};
+  return number <= std::size(numerals) ? fmt::format("({})", numerals[number - 1])
+                                       : fmt::format("({})", number);
+}
+
+/// Says in the legend that there is no measurement, and why: there if it fits, else below the panel.
+void explain_unavailable(Panel& panel, const std::string& why, bool alone) {
+  const double room = alone ? 290.0 : 430.0;     // of a legend entry's words [pt]
+  constexpr std::size_t longest_measured = 200;  // bytes; more never fit on a line
+  Look look;
+  look.color = {0.6, 0.6, 0.6, 1.0};
+  look.line_width = 1.3;
+  look.dash = {2.0, 4.0};
+  std::string label = "measured: not available";
+  const std::string whole = label + ", " + escaped(why);
+  if (whole.size() < longest_measured && text_width(whole) <= room)
+    label = whole;
+  else
+    panel.notes.push_back("Measured: not available (" + escaped(why) + ")");
+  panel.curves.push_back({label, look, {}, {}, 0});
 }
 
 /// The tame part of values that start at zero or go through it, with room at the ends that are not zero.
@@ -722,6 +826,7 @@ Panel curve_panel(const std::vector<Member>& members, const vv::FigureRequest& r
     across.push_back(extent_of(line.curve->x));
     along.push_back(extent_of(line.curve->y));
   }
+  across.push_back(extent_of(request.stages));
   const std::string x_name = lines.empty() ? "" : lines.front().curve->x_name;
   const bool settles = request.quantity == "pressure";
   Axis& x = settles ? panel.y : panel.x;
@@ -741,6 +846,10 @@ Panel curve_panel(const std::vector<Member>& members, const vv::FigureRequest& r
   }
   panel.notes =
       notes_on_runs(members, [&](const Member& m) { return !curve_of(*m.run, request.quantity, "run"); });
+  if (settles && request.marks) mark_bends(panel, members, x_factor, y_factor);
+  for (std::size_t k = 0; k < request.stages.size(); ++k)
+    panel.levels.push_back({request.stages[k] * x_factor, stage_label(k + 1), "", {muted, 0.6, {1.0, 2.0}}});
+  if (!request.unavailable.empty()) explain_unavailable(panel, request.unavailable, title.empty());
   return panel;
 }
 
@@ -861,6 +970,21 @@ std::vector<std::string> moments_of(std::vector<Member> members) {
   return moments;
 }
 
+/// The moments of the snapshots that a request chooses, in its order.
+std::vector<std::string> chosen_moments(const vv::Case& definition, const vv::FigureRequest& request) {
+  std::vector<std::string> moments;
+  for (const int index : request.snapshots)
+    moments.push_back(vv::moment_of(definition.snapshots.at(static_cast<std::size_t>(index))));
+  return moments;
+}
+
+/// Markup of a moment, with a true minus sign.
+std::string moment_markup(const std::string& moment) {
+  std::string markup = escaped(moment);
+  const std::size_t minus = markup.find("= -");
+  return minus == std::string::npos ? markup : markup.replace(minus + 2, 1, "−");
+}
+
 /// The run at the moment, or a note why it cannot be shown.
 FieldPanel field_panel(const Member& member, const std::string& moment, const std::string& quantity) {
   FieldPanel panel;
@@ -876,7 +1000,7 @@ FieldPanel field_panel(const Member& member, const std::string& moment, const st
   } else if (!record.completed()) {
     panel.note = "did not complete: " + name_of_ending(record) + place_of_ending(record);
   } else {
-    panel.note = "completed, but kept no snapshot" + (moment.empty() ? "" : " at " + escaped(moment));
+    panel.note = "completed, but kept no snapshot" + (moment.empty() ? "" : " at " + moment_markup(moment));
   }
   return panel;
 }
@@ -886,20 +1010,30 @@ std::string name_in_row(const Member& member) {
   return member.panel + (member.series == "simulation" ? "" : ", " + member.series);
 }
 
+/// The frames in which a measurement would stand if there were one, as many as there are moments.
+void add_unavailable_row(FieldPlot& plot, std::size_t moments, const std::string& why) {
+  for (std::size_t column = 0; column < moments; ++column)
+    plot.panels.push_back({column == 0 ? "measured: not available" : "", std::nullopt, escaped(why), true});
+}
+
 /// Runs in rows and moments in columns; with one of either alone, the panels flow as they fill the page best.
+/// The last of the rows may be that of a missing measurement, which has its name.
 void set_names(FieldPlot& plot, const std::vector<Member>& members, const std::vector<std::string>& moments) {
-  const bool one_moment = moments.size() == 1, one_run = members.size() == 1;
+  const bool one_moment = moments.size() == 1;
+  const bool one_run = plot.panels.size() == moments.size();
   for (std::size_t i = 0; i < plot.panels.size(); ++i) {
     const std::size_t row = i / moments.size(), column = i % moments.size();
+    if (row >= members.size()) continue;
     if (one_run && !one_moment)
-      plot.panels[i].title = escaped(moments[column]);
+      plot.panels[i].title = moment_markup(moments[column]);
     else if (column == 0)
       plot.panels[i].title = name_in_row(members[row]);
+    if (column == 0 && plot.panels[i].title.empty() && !one_run) plot.panels[i].title = "simulated";
   }
   if (one_run && !one_moment)
     plot.heads = {name_in_row(members.front())};
   else
-    for (const std::string& moment : moments) plot.heads.push_back(escaped(moment));
+    for (const std::string& moment : moments) plot.heads.push_back(moment_markup(moment));
   if (std::all_of(plot.heads.begin(), plot.heads.end(), [](const std::string& h) { return h.empty(); }))
     plot.heads.clear();
   plot.columns = one_run || one_moment ? best_columns(plot) : static_cast<int>(moments.size());
@@ -920,8 +1054,8 @@ std::string beyond_scale(const FieldPlot& plot) {
 }
 
 /// What a reader of the picture must know beside it.
-void set_notes(FieldPlot& plot, const std::vector<Member>& members, const vv::CaseVerdict& verdict,
-               std::size_t moments, std::size_t came_about) {
+void set_notes(FieldPlot& plot, const std::vector<Member>& members, std::size_t moments, std::size_t asked,
+               std::size_t came_about) {
   if (plot.scale.above || plot.scale.below)
     plot.notes.push_back(fmt::format(
         "The colour scale covers at least percentiles {:g} to {:g} of the values of completed runs. "
@@ -936,7 +1070,6 @@ void set_notes(FieldPlot& plot, const std::vector<Member>& members, const vv::Ca
       plot.notes.push_back(fmt::format("{} did not complete: {}{}; shown is what was kept before.",
                                        members[m].series, name_of_ending(record), place_of_ending(record)));
   }
-  const std::size_t asked = verdict.definition.snapshots.size();
   if (came_about < asked)
     plot.notes.push_back(
         fmt::format("Of {} snapshots asked for, {} came about in no run.", asked, asked - came_about));
@@ -945,15 +1078,36 @@ void set_notes(FieldPlot& plot, const std::vector<Member>& members, const vv::Ca
 // ---- metrics
 // ----------------------------------------------------------------------------------------------------
 
-double metric_of(const vv::RunVerdict& run, const std::string& metric) {
-  const auto found = run.metrics.find(metric);
-  return found == run.metrics.end() ? nan_value : found->second;
+const vv::Reading* reading_of(const vv::Case& definition, const std::string& metric) {
+  for (const vv::Reading& reading : definition.readings)
+    if (metric == vv::reading_prefix + reading.id) return &reading;
+  return nullptr;
+}
+
+/// The SI unit of a metric of a case; "-" of a pure number, empty of one that is not known.
+std::string si_unit_of(const std::string& metric, const vv::Case& definition) {
+  if (const vv::Reading* reading = reading_of(definition, metric)) return vv::metric_of(*reading).unit;
+  for (const vv::Metric& known : vv::metric_catalogue())
+    if (known.name == metric) return known.unit;
+  return "";
 }
 
 std::string unit_of(const std::string& metric) {
-  for (const vv::Metric& known : vv::metric_catalogue())
-    if (known.name == metric && known.unit != "-") return " [" + escaped(known.unit) + "]";
-  return "";
+  const std::string unit = si_unit_of(metric, {});
+  return unit.empty() || unit == "-" ? "" : " [" + escaped(unit) + "]";
+}
+
+/// Whether a metric is a value of its own and no error: it goes to a limit other than zero.
+bool is_value(const std::string& metric) {
+  return metric.starts_with(vv::reading_prefix) || metric.starts_with("load_curve.");
+}
+
+/// How the values of a metric are shown, and the axis label that says so. A pure number stays one.
+Quantity shown_metric(const std::string& metric, const vv::Case& definition, double reach) {
+  const std::string unit = si_unit_of(metric, definition), name = name_of_metric(metric, definition);
+  if (unit.empty() || unit == "-") return {1.0, name};
+  const Quantity shown = shown_unit(unit, reach);
+  return {shown.factor, name + " [" + shown.label + "]"};
 }
 
 /// Without the reference, which the panel's title names.
@@ -1001,17 +1155,21 @@ std::optional<PlotCurve> floor_curve(const std::vector<Member>& members, const s
   return curve;
 }
 
+/// Whether a run is one of those that a series was made of.
+bool is_part_of(const Member& member, const vv::SeriesVerdict& series) {
+  return std::all_of(series.fixed.begin(), series.fixed.end(), [&member](const auto& entry) {
+    const vv::Json* value = value_of(member.run->parameters, entry.first);
+    return value && *value == entry.second;
+  });
+}
+
 /// Observed orders of one series between neighbouring refinements, for a note; empty if the verdict has none.
 std::string order_note(const vv::CaseVerdict& verdict, const vv::FigureRequest& request, const Member& member,
                        const std::string& metric) {
   for (const vv::SeriesVerdict& series : verdict.series) {
-    if (series.across != request.over) continue;
-    const bool same = std::all_of(series.fixed.begin(), series.fixed.end(), [&member](const auto& entry) {
-      const vv::Json* value = value_of(member.run->parameters, entry.first);
-      return value && *value == entry.second;
-    });
+    if (series.across != request.over || !is_part_of(member, series)) continue;
     const auto orders = series.orders.find(metric);
-    if (!same || orders == series.orders.end() || orders->second.empty()) continue;
+    if (orders == series.orders.end() || orders->second.empty()) continue;
     return "Observed orders of " + member.series + ": " + orders_markup(orders->second);
   }
   return "";
@@ -1023,9 +1181,109 @@ std::string subject_of(const std::string& metric) {
   return "against " + short_name_of_reference(metric.substr(0, metric.find('.')));
 }
 
+/// The convergence of a metric over the refinement that a run is part of; null where none was found.
+const vv::GridConvergence* convergence_of(const vv::CaseVerdict& verdict, const std::string& across,
+                                          const Member& member, const std::string& metric) {
+  for (const vv::SeriesVerdict& series : verdict.series) {
+    if (series.across != across || !is_part_of(member, series)) continue;
+    const auto found = series.convergence.find(metric);
+    if (found != series.convergence.end()) return &found->second;
+  }
+  return nullptr;
+}
+
+/// An upright bar with a cap at either end.
+PlotCurve error_bar(double x, double lower, double upper, double half_cap, const Color& color) {
+  Look look;
+  look.color = color;
+  look.line_width = 0.9;
+  return {"",
+          look,
+          {x - half_cap, x + half_cap, x, x, x - half_cap, x + half_cap},
+          {lower, lower, lower, upper, upper, upper},
+          1};
+}
+
+/// A value over the cell size on axes that begin at a cell size of zero, where the extrapolated value stands
+/// and how far off the finest may be.
+Panel value_panel(const std::vector<Member>& members, const vv::CaseVerdict& verdict,
+                  const vv::FigureRequest& request, const std::string& metric, const std::string& title) {
+  Panel panel;
+  panel.title = title;
+  panel.x.label = "cell size <i>h</i> [mm]";
+  Extent values, sizes;
+  for (const Member& member : members) {
+    values.include(metric_of(*member.run, metric));
+    sizes.include(member.cell_size * 1e3);
+  }
+  if (sizes.empty()) sizes.include(1.0);
+  const Quantity shown = shown_metric(metric, verdict.definition, values.empty() ? 0.0 : values.reach());
+  panel.y.label = shown.label;
+  panel.x.ticks = {{0.0, "0"}};
+  panel.x.range = {-0.08 * sizes.upper, 1.08 * sizes.upper};
+  const auto labels = distinct(members, [](const Member& m) { return m.series; });
+  bool any_bar = false;
+  for (std::size_t k = 0; k < labels.size(); ++k) {
+    std::map<double, double> points;
+    const Member* first = nullptr;
+    for (const Member& member : members) {
+      const double value = metric_of(*member.run, metric);
+      if (member.series != labels[k] || !std::isfinite(member.cell_size)) continue;
+      if (!first) first = &member;
+      panel.x.ticks.emplace_back(member.cell_size * 1e3, millimetres(member.cell_size));
+      if (std::isfinite(value)) points[member.cell_size * 1e3] = value * shown.factor;
+    }
+    if (!first || points.empty()) continue;
+    Look look = look_of_series(first->look);
+    look.marker_size = look.filled ? 4.0 : 4.8;
+    PlotCurve curve{labels[k], look, {}, {}, 2};
+    for (const auto& [x, y] : points) {
+      curve.x.push_back(x);
+      curve.y.push_back(y);
+    }
+    const std::string orders = order_note(verdict, request, *first, metric);
+    if (!orders.empty()) panel.notes.push_back(orders);
+    if (const vv::GridConvergence* found = convergence_of(verdict, request.over, *first, metric)) {
+      // Series side by side, so that no bar hides another.
+      const double beside = static_cast<double>(k) - (static_cast<double>(labels.size()) - 1.0) / 2;
+      const double x = 0.025 * sizes.upper * beside, finest = points.begin()->second;
+      const double reach = found->uncertainty * std::abs(finest);
+      any_bar = true;
+      values.include((finest - reach) / shown.factor);
+      values.include((finest + reach) / shown.factor);
+      panel.curves.push_back(error_bar(x, finest - reach, finest + reach, 0.009 * sizes.upper, look.color));
+      if (std::isfinite(found->extrapolated)) {
+        const double limit = found->extrapolated * shown.factor;
+        values.include(found->extrapolated);
+        Look to_limit = look;
+        to_limit.marker = MarkerShape::none;
+        to_limit.line_width = 0.8;
+        to_limit.dash = {1.0, 2.0};
+        panel.curves.push_back({"", to_limit, {x, points.begin()->first}, {limit, finest}, 0});
+        Look mark = mark_look(MarkerShape::diamond, 4.6, look.color);
+        panel.curves.push_back({"", mark, {x}, {limit}, 3});
+      }
+    }
+    panel.curves.push_back(std::move(curve));
+  }
+  std::sort(panel.x.ticks.begin(), panel.x.ticks.end());
+  panel.x.ticks.erase(std::unique(panel.x.ticks.begin(), panel.x.ticks.end()), panel.x.ticks.end());
+  const Range wide = values.widened(0.1);
+  panel.y.range = {wide.lower * shown.factor, wide.upper * shown.factor};
+  if (any_bar)
+    panel.notes.push_back(
+        "At <i>h</i> = 0: the extrapolated value, where the order allows one, and the finest value ± its "
+        "uncertainty of discretisation.");
+  for (std::string& note :
+       notes_on_runs(members, [&](const Member& m) { return !std::isfinite(metric_of(*m.run, metric)); }))
+    panel.notes.push_back(std::move(note));
+  return panel;
+}
+
 Panel convergence_panel(const std::vector<Member>& members, const vv::CaseVerdict& verdict,
                         const vv::FigureRequest& request, const std::string& metric,
                         const std::string& title) {
+  if (is_value(metric)) return value_panel(members, verdict, request, metric, title);
   Panel panel;
   panel.title = title;
   panel.x.label = "cell size <i>h</i> [mm]";
@@ -1116,9 +1374,10 @@ std::vector<LevelLine> gate_levels(const vv::Case& definition, const std::vector
 Panel bar_panel(const std::vector<Member>& members, const vv::CaseVerdict& verdict,
                 const std::string& metric) {
   Panel panel;
-  panel.title = capitalised(name_of_metric(metric));
+  panel.title = capitalised(name_of_metric(metric, verdict.definition));
   panel.y.scale = Scale::logarithmic;
-  panel.y.label = axis_name_of_metric(metric);
+  panel.y.label = reading_of(verdict.definition, metric) ? shown_metric(metric, verdict.definition, 0.0).label
+                                                         : axis_name_of_metric(metric);
   const auto series = distinct(members, [](const Member& m) { return m.series; });
   const auto groups = distinct(members, [](const Member& m) { return m.panel; });
   std::vector<double> values;
@@ -1148,6 +1407,90 @@ Panel bar_panel(const std::vector<Member>& members, const vv::CaseVerdict& verdi
   const bool cut =
       std::any_of(values.begin(), values.end(), [&panel](double v) { return v > panel.y.range.upper; });
   if (cut) panel.y.range.upper *= 4.0;
+  return panel;
+}
+
+// ---- decomposition
+// ------------------------------------------------------------------------------------------------
+
+/// The run that a member's change is seen against: the first value of the axis, all else alike.
+const Member* baseline_of(const Member& member, const std::vector<Member>& members, const vv::Json& first,
+                          const std::string& over) {
+  for (const Member& other : members) {
+    const vv::Json* value = value_of(other.run->parameters, over);
+    if (value && *value == first && other.panel == member.panel && other.series == member.series)
+      return &other;
+  }
+  return nullptr;
+}
+
+/// "+14 %"; of a change beyond a factor of ten, how many times as much.
+std::string change_text(double value, double baseline) {
+  if (!std::isfinite(value) || !std::isfinite(baseline) || baseline == 0.0) return "";
+  const double change = 100.0 * (value / baseline - 1.0), size = std::abs(change);
+  if (size >= 900.0) return fmt::format("×{:.0f}", value / baseline);
+  const std::string digits = fmt::format("{:.{}f}", size, size < 9.95 ? 1 : 0);
+  const bool zero = digits == "0.0";
+  return (zero ? "±" : change < 0.0 ? "−" : "+") + digits + " %";
+}
+
+/// Where the reference solutions of the baseline's run are when they are read like the metric.
+std::vector<RowLine> reference_lines(const Member& baseline, const vv::Reading& reading,
+                                     const std::vector<std::string>& references, double factor) {
+  std::vector<RowLine> lines;
+  for (std::size_t i = 0; i < references.size(); ++i) {
+    const vv::Curve* curve = vv::find_curve(baseline.run->curves, reading.curve, references[i]);
+    const double value = curve ? vv::value_at(*curve, reading.at, reading.within).value : nan_value;
+    if (!std::isfinite(value)) continue;
+    const Look look = dashed_reference_look(i);
+    lines.push_back(
+        {value * factor, name_of_reference(references[i]), {look.color, look.line_width, look.dash}});
+  }
+  return lines;
+}
+
+constexpr double decomposition_values = 0.34;  // of the axis's width: room for values and changes
+
+RowPanel decomposition_panel(const std::vector<Member>& members, const vv::CaseVerdict& verdict,
+                             const vv::FigureRequest& request, const std::string& metric) {
+  RowPanel panel;
+  Extent extent;
+  extent.include(0.0);
+  for (const Member& member : members) extent.include(metric_of(*member.run, metric));
+  const Quantity shown = shown_metric(metric, verdict.definition, extent.reach());
+  panel.x.label = shown.label;
+  const vv::Json* first = value_of(members.front().run->parameters, request.over);
+  std::set<const Member*> baselines;
+  for (const Member& member : members) {
+    const Member* baseline = first ? baseline_of(member, members, *first, request.over) : nullptr;
+    if (baseline) baselines.insert(baseline);
+    const double value = metric_of(*member.run, metric);
+    const bool is_baseline = baseline == &member;
+    const std::string change = is_baseline ? "baseline"
+                               : baseline  ? change_text(value, metric_of(*baseline->run, metric))
+                                           : "";
+    RowBar bar{is_baseline ? 0U : 1U, value * shown.factor};
+    bar.text = std::isfinite(value) ? number_markup(bar.value) + (change.empty() ? "" : " · " + change)
+               : member.run->record.completed() ? "not measured"
+                                                : "did not complete";
+    std::string name = member.over;
+    if (member.series != "simulation") name += (name.empty() ? "" : ", ") + member.series;
+    panel.rows.push_back({name, {bar}});
+  }
+  if (baselines.size() == 1) {
+    const Member& baseline = **baselines.begin();
+    const double value = metric_of(*baseline.run, metric);
+    if (std::isfinite(value)) panel.lines.push_back({value * shown.factor, "", {ink, 0.8, {}}});
+    const vv::Reading* reading = reading_of(verdict.definition, metric);
+    if (reading && reading->over.empty())
+      for (RowLine& line : reference_lines(baseline, *reading, request.references, shown.factor)) {
+        extent.include(line.value / shown.factor);
+        panel.lines.push_back(std::move(line));
+      }
+  }
+  const double span = std::max((extent.upper - extent.lower) * shown.factor, 1e-300);
+  panel.x.range = {extent.lower * shown.factor - (extent.lower < 0.0 ? 0.04 * span : 0.0),
+                   extent.upper * shown.factor + span * decomposition_values / (1.0 - decomposition_values)};
   return panel;
 }
 
@@ -1207,6 +1550,8 @@ std::string escaped(const std::string& text) {
 
 std::string name_of_parameter(const std::string& pointer, const vv::Json& value) {
   const std::string text = plain_text(value);
+  // An axis that has a name in place of a pointer has values that are names themselves.
+  if (!pointer.starts_with('/')) return escaped(text);
   if (pointer == "/scene/gravity/level") return escaped(text) + "G";
   if (pointer == "/scene/scheme") return scheme_name(text);
   if (pointer == "/scene/grid/cell_size") {
@@ -1214,6 +1559,10 @@ std::string name_of_parameter(const std::string& pointer, const vv::Json& value)
     return "<i>h</i> = " + (metres ? millimetres(*metres) + " mm" : escaped(text));
   }
   if (pointer.ends_with("/youngs_modulus")) return "<i>E</i> = " + escaped(text);
+  for (const auto& [ending, symbol] : {std::pair{"/friction_angle", "φ"}, {"/dilation_angle", "ψ"}})
+    if (pointer.ends_with(ending) && text.ends_with(" deg"))
+      return fmt::format("<i>{}</i> = {}°", symbol, escaped(text.substr(0, text.size() - 4)));
+  if (pointer.ends_with("/cohesion")) return "<i>c</i> = " + escaped(text);
   if (pointer == "/scene/update_order" && value.is_string()) {
     std::string upper = text;
     for (char& c : upper)
@@ -1252,6 +1601,11 @@ std::string name_of_metric(const std::string& metric) {
   const std::string reference = metric.substr(0, metric.find('.'));
   if (reference == "floor") return "model-form floor, " + error;
   return error + " against " + short_name_of_reference(reference);
+}
+
+std::string name_of_metric(const std::string& metric, const vv::Case& definition) {
+  const vv::Reading* reading = reading_of(definition, metric);
+  return reading ? escaped(reading->title) : name_of_metric(metric);
 }
 
 std::string name_of_ending(const vv::Record& record) {
@@ -1345,7 +1699,9 @@ Plot plot_of(const vv::CaseVerdict& verdict, const vv::FigureRequest& request) {
     throw std::invalid_argument("a plot cannot be of kind \"" + request.kind + "\"");
   }
   plot.columns = plot.panels.size() > 1 ? 2 : 1;
-  if (plot.columns == 1) plot.width = 340.0;
+  const bool crowded = distinct(members, [](const Member& m) { return m.series; }).size() > many_series;
+  if (plot.columns == 1 && !crowded) plot.width = 340.0;
+  if (plot.columns == 1 && crowded) plot.frame_aspect = 0.62;
   if (plot.panels.empty()) {
     Panel nothing;
     nothing.notes = {"No run was selected for this figure."};
@@ -1364,7 +1720,16 @@ FieldPlot field_plot_of(const vv::CaseVerdict& verdict, const vv::FigureRequest&
     throw std::invalid_argument("no field is called \"" + request.quantity + "\"");
   const std::vector<Member> members = members_of(verdict, request);
   std::vector<std::string> moments = moments_of(members);
-  const std::size_t came_about = moments.size();
+  std::size_t asked = verdict.definition.snapshots.size(), came_about = moments.size();
+  if (!request.snapshots.empty()) {
+    const std::vector<std::string> chosen = chosen_moments(verdict.definition, request);
+    asked = chosen.size();
+    came_about = static_cast<std::size_t>(
+        std::count_if(chosen.begin(), chosen.end(), [&moments](const std::string& moment) {
+          return std::find(moments.begin(), moments.end(), moment) != moments.end();
+        }));
+    moments = chosen;
+  }
   if (moments.empty()) moments = {""};
   FieldPlot plot;
   for (const Member& member : members)
@@ -1380,18 +1745,57 @@ FieldPlot field_plot_of(const vv::CaseVerdict& verdict, const vv::FigureRequest&
   if (tame.empty()) tame = all;
   plot.x = view_range(tame, &vv::FieldMap::x, &vv::FieldMap::half_x);
   plot.y = view_range(tame, &vv::FieldMap::y, &vv::FieldMap::half_y);
+  if (request.view) {
+    plot.x = {request.view->lower[0], request.view->upper[0]};
+    plot.y = {request.view->lower[1], request.view->upper[1]};
+  }
   plot.scale = color_scale(tame, all, *quantity);
-  if (members.empty())
+  if (members.empty()) {
     plot.panels.push_back({"", std::nullopt, "No run was selected for this figure."});
-  else
+  } else {
+    if (!request.unavailable.empty()) add_unavailable_row(plot, moments.size(), request.unavailable);
     set_names(plot, members, moments);
-  set_notes(plot, members, verdict, moments.size(), came_about);
+  }
+  set_notes(plot, members, moments.size(), asked, came_about);
   plot.stamp = stamp_of(verdict, members);
   return plot;
 }
 
+ModelPlot model_plot_of(const vv::CaseVerdict& verdict, const vv::FigureRequest& request) {
+  ModelPlot plot;
+  const std::vector<Member> members = members_of(verdict, request);
+  for (const Member& member : members) {
+    if (!member.scene) continue;
+    const bool named = !member.run->parameters.empty();
+    plot.panels.push_back({named ? name_in_row(member) : "", *member.scene});
+  }
+  if (plot.panels.empty()) plot.notes = {"No run was selected for this figure."};
+  plot.stamp = stamp_of(verdict, members);
+  return plot;
+}
+
+RowChart decomposition_of(const vv::CaseVerdict& verdict, const vv::FigureRequest& request) {
+  RowChart chart;
+  const std::vector<Member> members = members_of(verdict, request);
+  const Look baseline = look_of_series(5);
+  Look changed = look_of_series(1);
+  changed.pattern = Look::Pattern::light;
+  chart.series = {{"baseline", baseline}, {"one cause changed", changed}};
+  for (const std::string& name : distinct(members, [](const Member& m) { return m.panel; }))
+    for (const std::string& metric : request.metrics) {
+      chart.panels.push_back(decomposition_panel(in_panel(members, name), verdict, request, metric));
+      chart.panels.back().title = name;
+    }
+  if (chart.panels.empty()) chart.panels.push_back({"No run was selected for this figure.", {}, {}, {}});
+  chart.stamp = stamp_of(verdict, members);
+  return chart;
+}
+
 Picture picture_of(const vv::CaseVerdict& verdict, const vv::FigureRequest& request) {
-  return request.kind == "fields" ? draw(field_plot_of(verdict, request)) : draw(plot_of(verdict, request));
+  if (request.kind == "decomposition") return draw(decomposition_of(verdict, request));
+  if (request.kind == "fields") return draw(field_plot_of(verdict, request));
+  if (request.kind == "model") return draw(model_plot_of(verdict, request));
+  return draw(plot_of(verdict, request));
 }
 
 }  // namespace mpm::reports

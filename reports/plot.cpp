@@ -599,8 +599,22 @@ Look look_of_series(int n) {
       {{0.70, 0.36, 0.55, 1.0}, 1.2, {1.4, 1.8}, MarkerShape::triangle, 4.4, false, Pattern::hatched},
       {{0.80, 0.55, 0.0, 1.0}, 1.2, {9.0, 2.5}, MarkerShape::cross, 4.4, false, Pattern::light},
       {{0.20, 0.20, 0.20, 1.0}, 1.2, {3.0, 1.5}, MarkerShape::triangle, 2.6, true, Pattern::solid},
+      // Six more, for pictures with many series: darker and paler neighbours, each with a dash of its own.
+      {{0.25, 0.65, 0.88, 1.0}, 1.2, {12.0, 3.0}, MarkerShape::circle, 3.0, true, Pattern::solid},
+      {{0.58, 0.05, 0.12, 1.0},
+       1.2,
+       {6.0, 2.0, 1.4, 2.0, 1.4, 2.0},
+       MarkerShape::square,
+       2.6,
+       true,
+       Pattern::solid},
+      {{0.42, 0.27, 0.62, 1.0}, 1.2, {5.0, 1.5}, MarkerShape::diamond, 4.4, false, Pattern::light},
+      {{0.50, 0.50, 0.05, 1.0}, 1.2, {2.2, 3.2}, MarkerShape::triangle, 3.4, true, Pattern::hatched},
+      {{0.12, 0.18, 0.48, 1.0}, 1.2, {8.0, 2.0, 3.0, 2.0}, MarkerShape::square, 4.2, false, Pattern::hatched},
+      {{0.45, 0.26, 0.10, 1.0}, 1.2, {4.0, 1.2, 1.2, 1.2}, MarkerShape::cross, 3.4, false, Pattern::light},
   };
-  return looks[static_cast<std::size_t>(((n % 6) + 6) % 6)];
+  const int count = static_cast<int>(looks.size());
+  return looks[static_cast<std::size_t>(((n % count) + count) % count)];
 }
 
 Picture draw(const Plot& plot, double pixels_per_point) {

@@ -51,7 +51,7 @@ struct Look {
   enum class Pattern { solid, light, hatched } pattern = Pattern::solid;  ///< of a bar
 };
 
-/// The n-th look of a colour-blind-safe sequence; repeats after six.
+/// The n-th look of a colour-blind-safe sequence; repeats after twelve.
 Look look_of_series(int n);
 
 /// A curve in the units of its axes. A point that is not finite breaks the line; a point outside the axes is

@@ -38,6 +38,7 @@ double axis_room(const RowPanel& panel) {
 }
 
 std::string value_text(const RowPanel& panel, const RowBar& bar) {
+  if (!bar.text.empty()) return bar.text;
   return std::isfinite(bar.value) ? fmt::format("{:.{}f}", bar.value, panel.decimals) : "–";
 }
 
@@ -80,7 +81,9 @@ void draw_bar(Canvas& canvas, const Placed& placed, const RowBar& bar, double mi
   const Rectangle& f = placed.frame;
   const std::string text = value_text(*placed.panel, bar);
   if (std::isfinite(bar.value)) {
-    const Rectangle box{f.left, middle - bar_height / 2, std::min(placed.at(bar.value), f.right),
+    const double zero = std::clamp(placed.at(0.0), f.left, f.right),
+                 end = std::clamp(placed.at(bar.value), f.left, f.right);
+    const Rectangle box{std::min(zero, end), middle - bar_height / 2, std::max(zero, end),
                         middle + bar_height / 2};
     layout.outside += placed.at(bar.value) > f.right + 0.01;
     canvas.clip(f);
@@ -90,7 +93,7 @@ void draw_bar(Canvas& canvas, const Placed& placed, const RowBar& bar, double mi
     if (std::isfinite(bar.low + bar.high))
       draw_whisker(canvas, placed.at(bar.low), placed.at(bar.high), middle, 5.0, whisker_stroke);
     canvas.unclip();
-    layout.points.push_back({box.right, middle});
+    layout.points.push_back({end, middle});
   } else {
     ++layout.not_finite;
   }

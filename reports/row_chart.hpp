@@ -8,7 +8,7 @@
 
 namespace mpm::reports {
 
-/// A level bar from the left edge of the axis, in the units of the axis.
+/// A level bar from zero, or from the left edge of an axis that begins above it, in the units of the axis.
 struct RowBar {
   static constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
@@ -16,6 +16,7 @@ struct RowBar {
   double value = none;             ///< NaN where there is none
   double low = none, high = none;  ///< ends of the error bar; NaN draws none
   double mark = none;              ///< an upright mark across the bar; NaN draws none
+  std::string text = {};           ///< markup that stands in the column of values; empty for the value itself
 };
 
 /// Bars one below the other that share a name.

@@ -77,6 +77,8 @@ std::vector<std::string> read_names(const JsonPlace& place, const std::vector<st
   return names;
 }
 
+std::string optional_text(const JsonPlace& place) { return place.present() ? place.text() : ""; }
+
 // ---- readings
 // ---------------------------------------------------------------------------------------------------
 
@@ -206,28 +208,80 @@ Gate read_gate(const JsonPlace& place, const Case& read) {
 
 /// The keys a figure of each kind may have beside those that every figure may have.
 std::vector<std::string> figure_keys(const std::string& kind) {
+  if (kind == "model") return {"id", "kind", "caption", "panels", "where"};
+  if (kind == "decomposition")
+    return {"id", "kind", "caption", "panels", "where", "over", "metrics", "references"};
   std::vector<std::string> keys = {"id", "kind", "caption", "panels", "series", "where"};
   if (kind == "profiles") keys.insert(keys.end(), {"quantity", "references"});
   if (kind == "convergence") keys.insert(keys.end(), {"over", "metrics"});
   if (kind == "bars") keys.push_back("metrics");
-  if (kind == "curves") keys.insert(keys.end(), {"quantity", "references"});
-  if (kind == "history" || kind == "fields") keys.push_back("quantity");
+  if (kind == "curves") keys.insert(keys.end(), {"quantity", "references", "unavailable", "marks", "stages"});
+  if (kind == "fields") keys.insert(keys.end(), {"quantity", "snapshots", "unavailable", "view"});
+  if (kind == "history") keys.push_back("quantity");
   return keys;
+}
+
+/// Every run must have what is drawn of it in the plane.
+void require_two_dimensions(const JsonPlace& place, const Case& read) {
+  for (const RunRequest& run : read.runs) {
+    if (run.scene.dimension != 2)
+      place.refuse("a figure of a scene with another dimension",
+                   ", which needs two dimensions" + in_run(run));
+  }
 }
 
 /// The name of a scalar to draw the snapshots by, which every run must have.
 std::string read_field(const JsonPlace& place, const Case& read) {
   if (read.snapshots.empty()) place.refuse("a figure of the case's snapshots, of which it has none");
   const std::string name = place.one_of(names_of(field_catalogue()));
+  require_two_dimensions(place, read);
   for (const RunRequest& run : read.runs) {
-    if (run.scene.dimension != 2)
-      place.refuse("a figure of a scene with another dimension",
-                   ", which needs two dimensions" + in_run(run));
     if (name.find("strain") != std::string::npos && !run.scene.sums_strain) {
       place.refuse("a scalar that the scene keeps", ", which needs sums_strain to be true" + in_run(run));
     }
   }
   return name;
+}
+
+/// Which of the case's snapshots to draw, each once; none if `place` is absent.
+std::vector<int> read_snapshot_choice(const JsonPlace& place, const Case& read) {
+  std::vector<int> chosen;
+  if (!place.present()) return chosen;
+  for (const JsonPlace& element : place.some_elements()) {
+    const int index = element.integer();
+    if (index < 0 || index >= static_cast<int>(read.snapshots.size())) {
+      element.refuse("a number from 0 to " + std::to_string(read.snapshots.size() - 1) +
+                     ", counting the case's snapshots");
+    }
+    if (std::find(chosen.begin(), chosen.end(), index) != chosen.end())
+      element.refuse("each snapshot once", " again");
+    chosen.push_back(index);
+  }
+  return chosen;
+}
+
+std::optional<ViewRequest> read_view(const JsonPlace& place) {
+  if (!place.present()) return std::nullopt;
+  place.allow_only({"lower", "upper"});
+  const ViewRequest view{read_per_axis(place["lower"], 2, QuantityKind::length),
+                         read_per_axis(place["upper"], 2, QuantityKind::length)};
+  for (std::size_t axis = 0; axis < 2; ++axis)
+    if (!(view.lower[axis] < view.upper[axis])) place["upper"].refuse("a corner above the lower one");
+  return view;
+}
+
+/// Settlements from small to large; none if `place` is absent.
+std::vector<double> read_stages(const JsonPlace& place, const std::string& quantity) {
+  std::vector<double> stages;
+  if (!place.present()) return stages;
+  if (quantity != "pressure") place.refuse("no key \"stages\" with a curve that is not over a settlement");
+  for (const JsonPlace& element : place.some_elements()) {
+    const double stage = element.quantity(QuantityKind::length);
+    if (!(stage > (stages.empty() ? 0.0 : stages.back())))
+      element.refuse("a settlement above zero and above the one before");
+    stages.push_back(stage);
+  }
+  return stages;
 }
 
 std::string read_probe_name(const JsonPlace& place, const std::vector<HistoryProbe>& probes) {
@@ -246,17 +300,17 @@ void read_layout(const JsonPlace& place, const Case& read, FigureRequest& figure
     used.push_back(parameter);
     return parameter;
   };
-  if (figure.kind == "convergence") figure.over = read_role("over");
+  if (figure.kind == "convergence" || figure.kind == "decomposition") figure.over = read_role("over");
   if (place["panels"].present()) figure.panels = read_role("panels");
   if (place["series"].present()) figure.series = read_role("series");
 }
 
 FigureRequest read_figure(const JsonPlace& place, const Case& read) {
   FigureRequest figure;
-  figure.kind =
-      place["kind"].one_of(is_element_case(read) ? std::vector<std::string>{"bars", "curves"}
-                                                 : std::vector<std::string>{"profiles", "convergence", "bars",
-                                                                            "history", "curves", "fields"});
+  figure.kind = place["kind"].one_of(
+      is_element_case(read) ? std::vector<std::string>{"bars", "curves", "decomposition"}
+                            : std::vector<std::string>{"profiles", "convergence", "bars", "history", "curves",
+                                                       "fields", "model", "decomposition"});
   place.allow_only(figure_keys(figure.kind));
   figure.id = place["id"].own_identifier(ids_of(read.figures));
   figure.caption = place["caption"].text();
@@ -265,14 +319,21 @@ FigureRequest read_figure(const JsonPlace& place, const Case& read) {
     figure.quantity = place["quantity"].one_of({"stress", "displacement", "stress_error"});
   } else if (figure.kind == "curves") {
     figure.quantity = read_curve_name(place["quantity"], read);
+    figure.marks = place["marks"].flag_or(false);
+    figure.stages = read_stages(place["stages"], figure.quantity);
   } else if (figure.kind == "history") {
     figure.quantity = read_probe_name(place["quantity"], read.probes);
   } else if (figure.kind == "fields") {
     figure.quantity = read_field(place["quantity"], read);
+    figure.snapshots = read_snapshot_choice(place["snapshots"], read);
+    figure.view = read_view(place["view"]);
+  } else if (figure.kind == "model") {
+    require_two_dimensions(place["kind"], read);
   } else {
     figure.metrics = read_metrics(place["metrics"], read);
   }
   if (place["references"].present()) figure.references = read_names(place["references"], read.references);
+  figure.unavailable = optional_text(place["unavailable"]);
   figure.where = read_where(place["where"], read.sweep);
   return figure;
 }
@@ -286,8 +347,6 @@ std::vector<std::string> read_texts(const JsonPlace& place) {
   for (const JsonPlace& element : place.elements()) texts.push_back(element.text());
   return texts;
 }
-
-std::string optional_text(const JsonPlace& place) { return place.present() ? place.text() : ""; }
 
 Claim read_claim(const JsonPlace& place, const Case& read) {
   place.allow_only({"claim", "finding", "gates", "remark"});

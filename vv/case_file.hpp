@@ -149,10 +149,15 @@ struct Reading {
   std::string over;  ///< a reference solution by whose curve, read alike, the number is divided; may be empty
 };
 
+/// The part of a two-dimensional scene that a figure shows.
+struct ViewRequest {
+  PerAxis lower{}, upper{};  ///< [m], lower below upper along both axes
+};
+
 /// A picture the report draws from the verdict of the case.
 struct FigureRequest {
   std::string id;
-  std::string kind;      ///< profiles, convergence, bars, history, curves, fields
+  std::string kind;      ///< profiles, convergence, bars, history, curves, fields, model
   std::string caption;
   std::string panels;    ///< swept parameter that separates panels; may be empty
   std::string series;    ///< swept parameter that separates curves; may be empty
@@ -162,6 +167,11 @@ struct FigureRequest {
   std::string over;                     ///< convergence: refined parameter
   std::vector<std::string> references;  ///< profiles, curves: names of reference solutions drawn beside the runs
   std::vector<Selector> where;
+  std::vector<int> snapshots = {};  ///< fields: indices into the case's snapshots; empty draws all
+  std::string unavailable = {};     ///< fields, curves: why there is no measurement to compare with; may be empty
+  std::optional<ViewRequest> view = std::nullopt;  ///< fields: the part to show; without one, all particles
+  bool marks = false;                              ///< curves: whether the bends that were found are marked
+  std::vector<double> stages = {};  ///< curves of pressure: settlements of note, from small to large [m]
 };
 
 /// One run of a sweep: its parameters, the resolved scene or element test, and its own text (for hashing).

@@ -41,7 +41,7 @@ struct Snapshot {
   ParticleFields fields;
 };
 
-/// What records call the moment of a requested snapshot.
+/// The name of the moment that a request asks for, as `Snapshot::moment` has it.
 std::string moment_of(const SnapshotRequest& request);
 
 /// What a run cost: a noisy measure and a noise-free one.

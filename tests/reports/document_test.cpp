@@ -124,16 +124,37 @@ TEST(Document, AFindingHoldsOnlyWhileItsGatesAreGood) {
     for (vv::GateResult& gate : run.gates)
       if (!gate.good()) gate.status = vv::GateStatus::pass;
   vv::Claim& claim = campaign.cases[0].definition.claims[0];
-  EXPECT_TRUE(has(report_html(campaign, {}), ">SEEN<"));
+  EXPECT_TRUE(has(report_html(campaign, {}), ">holds<"));
   claim.finding = vv::Finding::not_seen;
-  EXPECT_TRUE(has(report_html(campaign, {}), ">NOT SEEN<"));
+  EXPECT_TRUE(has(report_html(campaign, {}), ">not seen<"));
+  claim.finding = vv::Finding::depends;
+  EXPECT_TRUE(has(report_html(campaign, {}), ">holds in part<"));
   claim.gates = {"smooth", "never_applied"};
   EXPECT_TRUE(has(report_html(campaign, {}), ">NOT MEASURED<"));
   claim.gates = {"smooth"};
   campaign.cases[0].runs[1].gates[0].status = vv::GateStatus::fail;
   const std::string html = report_html(campaign, {});
   EXPECT_TRUE(has(html, ">IN DOUBT<"));
-  EXPECT_FALSE(has(html, ">NOT SEEN<"));
+  EXPECT_FALSE(has(html, ">not seen<"));
+}
+
+TEST(Document, AClaimShowsWhatItsGatesMeasuredAndTheirBound) {
+  vv::CampaignVerdict campaign = support::demo_campaign();
+  vv::CaseVerdict& levels = campaign.cases[0];
+  double value = 0.0031;
+  for (vv::RunVerdict& run : levels.runs)
+    if (run.gates[0].id == "smooth") run.gates[0].value = value += 0.0001;
+  const std::string html = report_html(campaign, {});
+  const std::size_t at = html.find("<section id=\"claims\">");
+  const std::string claims = html.substr(at, html.find("</section>", at) - at);
+  EXPECT_TRUE(has(claims, "<b>smooth</b>&nbsp;11/11"));
+  EXPECT_TRUE(
+      has(claims, "<span class=\"range\">3.20×10<sup>−3</sup> … 4.20×10<sup>−3</sup></span>, at most 0.02"));
+  EXPECT_FALSE(has(claims, "not measured"));
+  levels.runs[0].gates[0].value = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(has(report_html(campaign, {}), "at most 0.02; 1 not measured"));
+  levels.definition.claims[0].gates = {"oscillation_control"};
+  EXPECT_TRUE(has(report_html(campaign, {}), "not at most 0.01")) << "a control must violate its bound";
 }
 
 TEST(Document, EscapesWhatTheVerdictSays) {
@@ -192,6 +213,25 @@ TEST(Document, EmbedsFieldsAndCurvesLikeOtherFigures) {
   const std::string html = report_html(campaign, figures);
   EXPECT_TRUE(has(html, "<figure id=\"strip_footing-shear\">\n<img src=\"data:image/png;base64,iVBOR"));
   EXPECT_TRUE(has(html, "Against limit analysis, exact limit load"));
+}
+
+TEST(Document, ReadingsHaveTheirTitlesAndTheirLimit) {
+  vv::CampaignVerdict campaign = support::demo_campaign();
+  vv::CaseVerdict& refined = campaign.cases[1];
+  EXPECT_FALSE(has(report_html(campaign, {}), "uncertainty of the finest"));
+  refined.definition.readings = {{"deep", "pressure at <25 mm>", "pressure", 0.025, 0.0, ""}};
+  for (vv::RunVerdict& run : refined.runs) run.metrics["reading.deep"] = 5e4;
+  vv::SeriesVerdict& series = refined.series.back();
+  series.metrics["reading.deep"] = {7e4, 6e4, 5.5e4};
+  series.convergence["reading.deep"].extrapolated = 5e4;
+  series.convergence["reading.deep"].uncertainty = 0.12;
+  std::string html = report_html(campaign, {});
+  EXPECT_TRUE(has(html, "<td>pressure at &lt;25 mm&gt; <code>reading.deep</code></td>"));
+  EXPECT_TRUE(has(html, "<td>50000; ±12 %</td>"));
+  EXPECT_TRUE(has(html, "<th class=\"n\">pressure at &lt;25 mm&gt; [Pa]</th>"));
+  EXPECT_TRUE(has(html, "Readings"));
+  series.convergence["reading.deep"].extrapolated = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(has(report_html(campaign, {}), "<td>none; ±12 %</td>"));
 }
 
 TEST(Document, TellsWhenAFigureCouldNotBeDrawn) {

@@ -42,6 +42,11 @@ TEST(Names, AreThoseAPersonUses) {
   EXPECT_EQ(name_of_parameter("/scene/some_thing", "a<b"), "some thing a&lt;b");
   EXPECT_EQ(name_of_parameter("/scene/gravity/loading", {{"type", "ramp"}, {"duration", "1 s"}}),
             "ramped load over 1 s");
+  EXPECT_EQ(name_of_parameter("/scene/bodies/0/material/friction_angle", "20 deg"), "<i>φ</i> = 20°");
+  EXPECT_EQ(name_of_parameter("/scene/bodies/0/material/cohesion", "1 kPa"), "<i>c</i> = 1 kPa");
+  EXPECT_EQ(name_of_parameter("cause", "no embedment <1>"), "no embedment &lt;1&gt;");
+  EXPECT_EQ(name_of_run({{"cause", "thin layer"}, {"/scene/scheme", "mpm"}}), "thin layer, MPM");
+  EXPECT_EQ(name_of_reference("terzaghi"), "Terzaghi, surface");
   EXPECT_EQ(name_of_run({}), "the run");
   EXPECT_EQ(name_of_metric("hencky.settlement"), "error of settlement against Hencky");
   EXPECT_EQ(name_of_metric("cell_crossings"), "cell crossings");
@@ -231,6 +236,92 @@ TEST(Curves, ARunWithoutItsCurveIsNamed) {
   EXPECT_FALSE(notes_mention(figure.panels[0], "did not complete"));
 }
 
+TEST(Curves, StagesAreLinesAcrossThem) {
+  const vv::CaseVerdict verdict = support::demo_footing();
+  vv::FigureRequest staged = request(verdict, "settling");
+  staged.stages = {0.005, 0.02, 0.08};
+  const Panel panel = plot_of(verdict, staged).panels[0];
+  ASSERT_EQ(panel.levels.size(), 3U);
+  EXPECT_DOUBLE_EQ(panel.levels[1].value, 20.0);
+  EXPECT_EQ(panel.levels[0].label, "(i)");
+  EXPECT_EQ(panel.levels[2].label, "(iii)");
+  EXPECT_GE(panel.y.range.upper, 80.0) << "the axis reaches the last stage";
+}
+
+TEST(Curves, BendsAreMarkedWhereTheMetricsSay) {
+  vv::CaseVerdict verdict = support::demo_footing();
+  verdict.runs[2].metrics["load_curve.bend_settlement"] = 0.004;
+  verdict.runs[2].metrics["load_curve.bend_pressure"] = 3e4;
+  verdict.runs[1].metrics["load_curve.bend_settlement"] = 0.004;  // half of a place is none
+  vv::FigureRequest marked = request(verdict, "settling");
+  EXPECT_FALSE(curve(plot_of(verdict, marked).panels[0], "bend"));
+  marked.marks = true;
+  const Panel panel = plot_of(verdict, marked).panels[0];
+  ASSERT_TRUE(curve(panel, "bend"));
+  EXPECT_FALSE(curve(panel, "second bend"));
+  std::vector<const PlotCurve*> marks;
+  for (const PlotCurve& c : panel.curves)
+    if (c.label.empty()) marks.push_back(&c);
+  ASSERT_EQ(marks.size(), 1U);
+  EXPECT_EQ(marks[0]->x, std::vector<double>{30.0});
+  EXPECT_EQ(marks[0]->y, std::vector<double>{4.0});
+  EXPECT_EQ(marks[0]->look.color.blue, curve(panel, "cpGIMP")->look.color.blue);
+  EXPECT_FALSE(curve(plot_of(verdict, marked).panels[1], "bend")) << "no run of this panel has one";
+
+  // Of three phases, both bends of the three pieces; of one, none.
+  auto& metrics = verdict.runs[2].metrics;
+  metrics["load_curve.phases"] = 3.0;
+  metrics["load_curve.first_bend_settlement"] = 0.003;
+  metrics["load_curve.first_bend_pressure"] = 2e4;
+  metrics["load_curve.second_bend_settlement"] = 0.01;
+  metrics["load_curve.second_bend_pressure"] = 5e4;
+  const Panel bent_twice = plot_of(verdict, marked).panels[0];
+  ASSERT_TRUE(curve(bent_twice, "second bend"));
+  std::vector<double> settlements;
+  for (const PlotCurve& c : bent_twice.curves)
+    if (c.label.empty()) settlements.push_back(c.y.at(0));
+  EXPECT_EQ(settlements, (std::vector<double>{3.0, 10.0}));
+  metrics["load_curve.phases"] = 1.0;
+  EXPECT_FALSE(curve(plot_of(verdict, marked).panels[0], "bend"));
+}
+
+TEST(Curves, AMissingMeasurementIsNamedAndHasNoPoints) {
+  const vv::CaseVerdict verdict = support::demo_footing();
+  vv::FigureRequest compared = request(verdict, "settling");
+  compared.unavailable = "a picture <only>";
+  const Panel panel = plot_of(verdict, compared).panels[0];
+  const PlotCurve* entry = curve(panel, "measured: not available, a picture &lt;only&gt;");
+  ASSERT_TRUE(entry);
+  EXPECT_TRUE(entry->x.empty());
+  EXPECT_FALSE(entry->look.dash.empty());
+  compared.unavailable.clear();
+  for (int k = 0; k < 100; ++k) compared.unavailable += "not here ";
+  const Plot longer = plot_of(verdict, compared);
+  EXPECT_TRUE(curve(longer.panels[0], "measured: not available"));
+  EXPECT_TRUE(notes_mention(longer.panels[0], "Measured: not available (not here not"));
+  const Picture picture = draw(longer);
+  EXPECT_GE(picture.layout.legend.left, 0.0);
+  EXPECT_LE(picture.layout.legend.right, picture.canvas.width());
+}
+
+TEST(Curves, AReferenceThatDiffersFromRunToRunHasTheirColours) {
+  vv::CaseVerdict verdict = support::demo_footing();
+  const std::string name = "limit analysis, exact limit load";
+  const auto drawn = [&] {
+    std::vector<PlotCurve> curves = plot(verdict, "settling").panels[0].curves;
+    std::erase_if(curves, [&name](const PlotCurve& c) { return c.label != name; });
+    return curves;
+  };
+  ASSERT_EQ(drawn().size(), 1U);
+  EXPECT_EQ(drawn()[0].look.color.red, drawn()[0].look.color.blue) << "black, as all runs share it";
+  for (double& y : verdict.runs[2].curves[1].y) y *= 1.5;
+  const std::vector<PlotCurve> two = drawn();
+  ASSERT_EQ(two.size(), 2U);
+  EXPECT_EQ(two[0].look.color.red, two[0].look.color.blue) << "still shared by two runs";
+  const Plot figure = plot(verdict, "settling");
+  EXPECT_EQ(two[1].look.color.blue, curve(figure.panels[0], "cpGIMP")->look.color.blue);
+}
+
 TEST(Curves, StressPathsHaveStrainToTheRight) {
   vv::CaseVerdict verdict = support::demo_footing();
   verdict.runs[0].curves = {{"q", "run", {0.0, 0.02, 0.06}, {0.0, 5e4, 6e4}, "strain"}};
@@ -242,6 +333,147 @@ TEST(Curves, StressPathsHaveStrainToTheRight) {
   EXPECT_FALSE(panel.y.reversed);
   EXPECT_DOUBLE_EQ(curve(panel, "MPM")->x.back(), 6.0);
   EXPECT_DOUBLE_EQ(curve(panel, "MPM")->y.back(), 60.0);
+}
+
+/// Three cell sizes of two schemes with a reading of the pressure, which goes to 50 kPa.
+vv::CaseVerdict readings() {
+  vv::CaseVerdict verdict;
+  verdict.definition.readings = {{"deep", "pressure at 25 mm", "pressure", 0.025, 0.0, ""}};
+  for (const char* scheme : {"ugimp", "cpgimp"}) {
+    vv::SeriesVerdict series;
+    series.across = support::demo::size_pointer;
+    series.fixed = {{support::demo::scheme_pointer, scheme}};
+    for (const double h : {0.02, 0.01, 0.005}) {
+      vv::RunVerdict run = support::demo::run(scheme, 1, 10);
+      run.parameters = {{support::demo::scheme_pointer, scheme},
+                        {support::demo::size_pointer, std::to_string(h) + " m"}};
+      run.metrics = {{"reading.deep", 5e4 + 1e6 * h}};
+      run.curves = {{"pressure", "terzaghi", {0.0, 0.05}, {3e4, 5e4}, "settlement"}};
+      verdict.definition.runs.push_back(support::demo::request(run, h));
+      verdict.runs.push_back(run);
+    }
+    vv::GridConvergence convergence;
+    convergence.monotone = true;
+    convergence.order = 1.0;
+    convergence.extrapolated = std::string(scheme) == "ugimp" ? 5e4 : std::numeric_limits<double>::quiet_NaN();
+    convergence.uncertainty = 0.1;
+    series.convergence["reading.deep"] = convergence;
+    series.orders["reading.deep"] = {1.0};
+    verdict.series.push_back(series);
+  }
+  return verdict;
+}
+
+TEST(Names, OfReadingsAreTheirTitles) {
+  const vv::CaseVerdict verdict = readings();
+  EXPECT_EQ(name_of_metric("reading.deep", verdict.definition), "pressure at 25 mm");
+  EXPECT_EQ(name_of_metric("cell_crossings", verdict.definition), "cell crossings");
+}
+
+vv::FigureRequest reading_request(const std::string& kind) {
+  vv::FigureRequest request;
+  request.kind = kind;
+  request.over = support::demo::size_pointer;
+  request.metrics = {"reading.deep"};
+  return request;
+}
+
+TEST(Convergence, ReadingsHaveLinearAxesFromZeroAndTheirLimitThere) {
+  vv::FigureRequest figure = reading_request("convergence");
+  figure.series = support::demo::scheme_pointer;
+  const Panel panel = plot_of(readings(), figure).panels.at(0);
+  EXPECT_EQ(panel.y.label, "pressure at 25 mm [kPa]");
+  EXPECT_EQ(panel.x.scale, Scale::linear);
+  EXPECT_EQ(panel.y.scale, Scale::linear);
+  EXPECT_LE(panel.x.range.lower, 0.0);
+  EXPECT_GT(panel.y.range.lower, 0.0);
+  EXPECT_EQ(panel.x.ticks.size(), 4U) << "zero and three sizes";
+  const PlotCurve* drawn = curve(panel, "uGIMP");
+  ASSERT_TRUE(drawn);
+  EXPECT_EQ(drawn->x, (std::vector<double>{5.0, 10.0, 20.0}));
+  EXPECT_DOUBLE_EQ(drawn->y[0], 55.0);
+  int bars = 0, limits = 0;
+  for (const PlotCurve& c : panel.curves) {
+    if (!c.label.empty()) continue;
+    if (c.x.size() == 6U) {
+      ++bars;
+      EXPECT_NEAR(c.y.front(), 55.0 - 5.5, 1e-9);
+      EXPECT_NEAR(c.y.back(), 55.0 + 5.5, 1e-9);
+      EXPECT_LT(std::abs(c.x[2]), 1.0);
+    }
+    if (c.x.size() == 1U) {
+      ++limits;
+      EXPECT_DOUBLE_EQ(c.y[0], 50.0);
+    }
+  }
+  EXPECT_EQ(bars, 2);
+  EXPECT_EQ(limits, 1) << "nothing is extrapolated where the order is not reliable";
+  EXPECT_TRUE(notes_mention(panel, "Observed orders of uGIMP: 1.00"));
+  EXPECT_TRUE(notes_mention(panel, "At <i>h</i> = 0"));
+  EXPECT_EQ(draw(plot_of(readings(), figure)).layout.panels[0].outside, 0);
+}
+
+TEST(Decomposition, ShowsTheChangeOfEachCauseAgainstTheFirst) {
+  vv::CaseVerdict verdict = readings();
+  verdict.runs.resize(3);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const char* names[] = {"as published", "thin <layer>", "half the cells"};
+    verdict.runs[k].parameters = {{"cause", names[k]}};
+  }
+  verdict.runs[1].metrics["reading.deep"] = 8e4;
+  verdict.runs[2].metrics.clear();
+  vv::FigureRequest figure = reading_request("decomposition");
+  figure.over = "cause";
+  figure.references = {"terzaghi", "embedded_limit"};
+  const RowChart chart = decomposition_of(verdict, figure);
+  ASSERT_EQ(chart.panels.size(), 1U);
+  const RowPanel& panel = chart.panels[0];
+  ASSERT_EQ(panel.rows.size(), 3U);
+  EXPECT_EQ(panel.x.label, "pressure at 25 mm [kPa]");
+  EXPECT_EQ(panel.rows[1].name, "thin &lt;layer&gt;");
+  EXPECT_EQ(panel.rows[0].bars.at(0).text, "70 · baseline");
+  EXPECT_EQ(panel.rows[1].bars.at(0).text, "80 · +14 %");
+  EXPECT_EQ(panel.rows[2].bars.at(0).text, "not measured");
+  EXPECT_DOUBLE_EQ(panel.rows[1].bars[0].value, 80.0);
+  EXPECT_EQ(panel.rows[0].bars[0].series, 0U);
+  EXPECT_EQ(panel.rows[1].bars[0].series, 1U);
+  ASSERT_EQ(panel.lines.size(), 2U) << "the baseline and the one reference that has a curve";
+  EXPECT_DOUBLE_EQ(panel.lines[0].value, 70.0);
+  EXPECT_DOUBLE_EQ(panel.lines[1].value, 40.0);
+  EXPECT_EQ(panel.lines[1].legend, "Terzaghi, surface");
+  const Picture picture = draw(chart);
+  EXPECT_EQ(picture.layout.panels[0].points.size(), 2U);
+  EXPECT_EQ(picture.layout.panels[0].not_finite, 1);
+  // No bar reaches into the column of values.
+  for (const Rectangle& value : picture.layout.panels[0].annotations)
+    for (const Point& end : picture.layout.panels[0].points) EXPECT_LT(end.x, value.left);
+}
+
+TEST(Decomposition, WhatElseVariesHasABaselineOfItsOwn) {
+  const RowChart chart = decomposition_of(readings(), reading_request("decomposition"));
+  ASSERT_EQ(chart.panels.size(), 1U);
+  ASSERT_EQ(chart.panels[0].rows.size(), 6U);
+  EXPECT_TRUE(chart.panels[0].lines.empty());
+  EXPECT_TRUE(chart.panels[0].rows[3].bars[0].text.ends_with("baseline"));
+  EXPECT_EQ(chart.panels[0].rows[3].name, "<i>h</i> = 20 mm, cpGIMP");
+  vv::FigureRequest paneled = reading_request("decomposition");
+  paneled.panels = support::demo::scheme_pointer;
+  const RowChart two = decomposition_of(readings(), paneled);
+  ASSERT_EQ(two.panels.size(), 2U);
+  EXPECT_EQ(two.panels[1].title, "cpGIMP");
+  EXPECT_EQ(two.panels[1].lines.size(), 1U);
+  paneled.where = {{"/scene/other", {1}}};
+  EXPECT_NO_THROW(draw(decomposition_of(readings(), paneled)));
+}
+
+TEST(Decomposition, ChangesHaveTheirSign) {
+  vv::CaseVerdict verdict = readings();
+  verdict.runs.resize(3);
+  verdict.runs[1].metrics["reading.deep"] = 7e4 * 0.974;
+  verdict.runs[2].metrics["reading.deep"] = 7e4 * 20.0;
+  const RowChart chart = decomposition_of(verdict, reading_request("decomposition"));
+  EXPECT_TRUE(chart.panels[0].rows[1].bars[0].text.ends_with("· −2.6 %"));
+  EXPECT_TRUE(chart.panels[0].rows[2].bars[0].text.ends_with("· ×20"));
 }
 
 bool any_mentions(const std::vector<std::string>& notes, const std::string& words) {
@@ -365,6 +597,101 @@ TEST(Fields, OneMomentFlowsAsItFitsBest) {
   EXPECT_EQ(figure.columns, 3);
   EXPECT_EQ(figure.panels[1].title, "1G, uGIMP");
   EXPECT_EQ(figure.heads, std::vector<std::string>{"footing = −5 mm"});
+}
+
+/// The demo's footing with the snapshots that its records hold asked for by name.
+vv::CaseVerdict footing_with_moments() {
+  vv::CaseVerdict verdict = support::demo_footing();
+  using When = vv::SnapshotRequest::When;
+  verdict.definition.snapshots = {
+      {When::time, 0.5, "", 0.0}, {When::passing, 0.0, "footing", -0.02}, {When::end, 0.0, "", 0.0}};
+  for (vv::RunVerdict& run : verdict.runs)
+    for (std::size_t k = 0; k < run.record.snapshots.size(); ++k)
+      run.record.snapshots[k].moment = vv::moment_of(verdict.definition.snapshots[k]);
+  return verdict;
+}
+
+TEST(Fields, OnlyTheSnapshotsChosenHaveColumns) {
+  const vv::CaseVerdict verdict = footing_with_moments();
+  vv::FigureRequest chosen = request(verdict, "shear");
+  chosen.snapshots = {2, 1};
+  const FieldPlot figure = field_plot_of(verdict, chosen);
+  ASSERT_EQ(figure.heads.size(), 2U);
+  EXPECT_EQ(figure.heads[0], "end");
+  EXPECT_EQ(figure.heads[1], "footing = −20 mm");
+  ASSERT_EQ(figure.panels.size(), 6U);
+  EXPECT_EQ(figure.panels[4].map->moment, "end");
+  EXPECT_NE(figure.panels[0].note.find("did not complete"), std::string::npos);
+  EXPECT_FALSE(any_mentions(figure.notes, "came about"));
+}
+
+TEST(Fields, AChosenSnapshotThatNeverCameIsCounted) {
+  vv::CaseVerdict verdict = footing_with_moments();
+  for (vv::RunVerdict& run : verdict.runs)
+    if (run.record.snapshots.size() > 1) run.record.snapshots.erase(run.record.snapshots.begin() + 1);
+  vv::FigureRequest chosen = request(verdict, "shear");
+  chosen.snapshots = {0, 1};
+  const FieldPlot figure = field_plot_of(verdict, chosen);
+  EXPECT_EQ(figure.panels.size(), 6U);
+  EXPECT_TRUE(any_mentions(figure.notes, "Of 2 snapshots asked for, 1 came about in no run."));
+}
+
+TEST(Fields, AMissingMeasurementHasARowOfHatchedFrames) {
+  const vv::CaseVerdict verdict = footing_with_moments();
+  vv::FigureRequest compared = request(verdict, "shear");
+  compared.where.push_back({support::demo::scheme_pointer, {"cpgimp"}});
+  compared.unavailable = "only a <picture>";
+  const FieldPlot figure = field_plot_of(verdict, compared);
+  ASSERT_EQ(figure.panels.size(), 6U);
+  EXPECT_EQ(figure.columns, 3);
+  EXPECT_EQ(figure.heads.size(), 3U);
+  EXPECT_EQ(figure.panels[3].title, "measured: not available");
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_EQ(figure.panels[i].hatched, i >= 3);
+    EXPECT_EQ(figure.panels[i].map.has_value(), i < 3);
+  }
+  EXPECT_EQ(figure.panels[5].note, "only a &lt;picture&gt;");
+  const Picture picture = draw(figure);
+  EXPECT_DOUBLE_EQ(picture.layout.panels[5].frame.width(), picture.layout.panels[2].frame.width());
+  EXPECT_DOUBLE_EQ(picture.layout.panels[5].frame.height(), picture.layout.panels[2].frame.height());
+  EXPECT_TRUE(picture.layout.panels[5].points.empty());
+}
+
+TEST(Fields, OfOneMomentTheMissingMeasurementIsOnePanelMore) {
+  const vv::CaseVerdict verdict = footing_with_moments();
+  vv::FigureRequest compared = request(verdict, "shear");
+  compared.snapshots = {0};
+  compared.unavailable = "none";
+  EXPECT_EQ(field_plot_of(verdict, compared).panels.size(), 4U);
+  compared.unavailable.clear();
+  EXPECT_EQ(field_plot_of(verdict, compared).panels.size(), 3U);
+}
+
+TEST(Fields, ShowThePartThatIsAskedFor) {
+  const vv::CaseVerdict verdict = support::demo_footing();
+  vv::FigureRequest zoomed = request(verdict, "shear");
+  zoomed.view = {{0.0, 0.5}, {0.8, 1.0}};
+  const FieldPlot figure = field_plot_of(verdict, zoomed);
+  EXPECT_EQ(figure.x.upper, 0.8);
+  EXPECT_EQ(figure.y.lower, 0.5);
+  EXPECT_EQ(figure.scale.range.upper, field_plot(verdict, "shear").scale.range.upper);
+  EXPECT_GT(draw(figure).layout.panels[8].outside, 900);
+}
+
+TEST(Model, HasAPanelForEveryRunSelected) {
+  vv::CaseVerdict verdict = support::demo_footing();
+  for (vv::RunRequest& run : verdict.definition.runs) run.scene.dimension = 2;
+  vv::FigureRequest model;
+  model.kind = "model";
+  model.where = {{support::demo::scheme_pointer, {"cpgimp"}}};
+  const ModelPlot figure = model_plot_of(verdict, model);
+  ASSERT_EQ(figure.panels.size(), 2U);
+  EXPECT_EQ(figure.panels[0].title, "1G");
+  EXPECT_EQ(figure.panels[1].title, "50G");
+  EXPECT_EQ(figure.panels[1].scene.bodies.at(0).name, "column");
+  model.where = {{"/scene/other", {1}}};
+  EXPECT_TRUE(any_mentions(model_plot_of(verdict, model).notes, "No run was selected"));
+  EXPECT_NO_THROW(picture_of(verdict, model));
 }
 
 TEST(Fields, SayWhyARunHasNoField) {

@@ -239,6 +239,18 @@ TEST(Plot, LooksDifferInMoreThanColour) {
     }
 }
 
+TEST(Plot, TwelveLooksDifferInColourAndDash) {
+  for (int i = 0; i < 12; ++i)
+    for (int k = 0; k < i; ++k) {
+      const Look a = look_of_series(i), b = look_of_series(k);
+      const double apart =
+          std::hypot(a.color.red - b.color.red, a.color.green - b.color.green, a.color.blue - b.color.blue);
+      EXPECT_GT(apart, 0.15) << i << " " << k;
+      EXPECT_NE(a.dash, b.dash) << i << " " << k;
+    }
+  EXPECT_EQ(look_of_series(12).dash, look_of_series(0).dash);
+}
+
 TEST(Plot, SurvivesCurvesWithoutPoints) {
   Plot plot;
   plot.panels = {waves(1)};

@@ -189,6 +189,31 @@ TEST(CaseFile, reads_snapshots_and_their_figures) {
   EXPECT_TRUE(parsed(valid_case()).snapshots.empty());
 }
 
+TEST(CaseFile, reads_what_a_figure_shows_beside_the_runs) {
+  Json text = footing_case();
+  text["figures"][0]["snapshots"] = {2, 0};
+  text["figures"][0]["unavailable"] = "nobody measured it";
+  text["figures"][0]["view"] = {{"lower", {"0 m", "-5 mm"}}, {"upper", {"1 m", "20 cm"}}};
+  text["figures"][1]["marks"] = true;
+  text["figures"][1]["stages"] = {"2 mm", "1 cm"};
+  text["figures"].push_back({{"id", "scene"}, {"kind", "model"}, {"caption", "The scene."}});
+  const Case read = parsed(text);
+  EXPECT_EQ(read.figures[0].snapshots, (std::vector<int>{2, 0}));
+  EXPECT_EQ(read.figures[0].unavailable, "nobody measured it");
+  ASSERT_TRUE(read.figures[0].view);
+  EXPECT_EQ(read.figures[0].view->lower, (PerAxis{0.0, -0.005}));
+  EXPECT_EQ(read.figures[0].view->upper, (PerAxis{1.0, 0.2}));
+  EXPECT_TRUE(read.figures[1].marks);
+  EXPECT_EQ(read.figures[1].stages, (std::vector<double>{0.002, 0.01}));
+  EXPECT_EQ(read.figures.back().kind, "model");
+
+  const Case plain = parsed(footing_case());
+  EXPECT_TRUE(plain.figures[0].snapshots.empty() && plain.figures[0].unavailable.empty());
+  EXPECT_FALSE(plain.figures[0].view);
+  EXPECT_FALSE(plain.figures[1].marks);
+  EXPECT_TRUE(plain.figures[1].stages.empty());
+}
+
 TEST(CaseFile, sweeps_over_several_places_at_once) {
   Json text = valid_case();
   text["sweep"][0]["with"] = Json::parse(
