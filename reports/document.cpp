@@ -389,11 +389,18 @@ data series_tables(const vv::CaseVerdict& verdict) {
       if (found == series.metrics.end() || table_of(metric).empty()) continue;
       std::vector<std::string> values;
       for (const double value : found->second) values.push_back(number_markup(value));
+      // The order of an error is that of its own fall; a reading's is that of its differences.
       const auto orders = series.orders.find(metric);
-      data row = object({{"metric", metric},
-                         {"title", is_reading(metric) ? name_of_metric(metric, verdict.definition) : ""},
-                         {"orders", orders == series.orders.end() ? "–" : orders_markup(orders->second)},
-                         {"limit", limit_of(series, metric)}});
+      const auto convergence = series.convergence.find(metric);
+      const std::string shown_orders = convergence != series.convergence.end()
+                                           ? orders_markup({convergence->second.order})
+                                       : orders == series.orders.end() ? "–"
+                                                                       : orders_markup(orders->second);
+      data row = object(
+          {{"metric", metric},
+           {"title", is_reading(metric) ? name_of_metric(metric, verdict.definition) : ""},
+           {"orders", is_reading(metric) && convergence == series.convergence.end() ? "–" : shown_orders},
+           {"limit", limit_of(series, metric)}});
       row.set("values", text_cells(values));
       rows << row;
     }

@@ -1192,6 +1192,13 @@ const vv::GridConvergence* convergence_of(const vv::CaseVerdict& verdict, const 
   return nullptr;
 }
 
+/// "observed order 1.62, finest value ± 3.1 %".
+std::string convergence_words(const vv::GridConvergence& convergence) {
+  const std::string order = convergence.monotone ? "observed order " + orders_markup({convergence.order})
+                                                 : std::string("not monotone");
+  return order + ", finest value ± " + number_markup(100.0 * convergence.uncertainty, 2) + " %";
+}
+
 /// An upright bar with a cap at either end.
 PlotCurve error_bar(double x, double lower, double upper, double half_cap, const Color& color) {
   Look look;
@@ -1241,14 +1248,13 @@ Panel value_panel(const std::vector<Member>& members, const vv::CaseVerdict& ver
       curve.x.push_back(x);
       curve.y.push_back(y);
     }
-    const std::string orders = order_note(verdict, request, *first, metric);
-    if (!orders.empty()) panel.notes.push_back(orders);
     if (const vv::GridConvergence* found = convergence_of(verdict, request.over, *first, metric)) {
       // Series side by side, so that no bar hides another.
       const double beside = static_cast<double>(k) - (static_cast<double>(labels.size()) - 1.0) / 2;
       const double x = 0.025 * sizes.upper * beside, finest = points.begin()->second;
       const double reach = found->uncertainty * std::abs(finest);
       any_bar = true;
+      panel.notes.push_back(labels[k] + ": " + convergence_words(*found));
       values.include((finest - reach) / shown.factor);
       values.include((finest + reach) / shown.factor);
       panel.curves.push_back(error_bar(x, finest - reach, finest + reach, 0.009 * sizes.upper, look.color));
@@ -1272,8 +1278,8 @@ Panel value_panel(const std::vector<Member>& members, const vv::CaseVerdict& ver
   panel.y.range = {wide.lower * shown.factor, wide.upper * shown.factor};
   if (any_bar)
     panel.notes.push_back(
-        "At <i>h</i> = 0: the extrapolated value, where the order allows one, and the finest value ± its "
-        "uncertainty of discretisation.");
+        "At <i>h</i> = 0: bar, the finest value ± its uncertainty of discretisation; diamond, the "
+        "extrapolated value, if the order allows one.");
   for (std::string& note :
        notes_on_runs(members, [&](const Member& m) { return !std::isfinite(metric_of(*m.run, metric)); }))
     panel.notes.push_back(std::move(note));
@@ -1444,7 +1450,7 @@ std::vector<RowLine> reference_lines(const Member& baseline, const vv::Reading& 
     if (!std::isfinite(value)) continue;
     const Look look = dashed_reference_look(i);
     lines.push_back(
-        {value * factor, name_of_reference(references[i]), {look.color, look.line_width, look.dash}});
+        {value * factor, name_of_reference(references[i]), {look.color, look.line_width, look.dash}, true});
   }
   return lines;
 }
@@ -1480,7 +1486,7 @@ RowPanel decomposition_panel(const std::vector<Member>& members, const vv::CaseV
   if (baselines.size() == 1) {
     const Member& baseline = **baselines.begin();
     const double value = metric_of(*baseline.run, metric);
-    if (std::isfinite(value)) panel.lines.push_back({value * shown.factor, "", {ink, 0.8, {}}});
+    if (std::isfinite(value)) panel.lines.push_back({value * shown.factor, "", {ink, 0.8, {}}, true});
     const vv::Reading* reading = reading_of(verdict.definition, metric);
     if (reading && reading->over.empty())
       for (RowLine& line : reference_lines(baseline, *reading, request.references, shown.factor)) {
@@ -1777,14 +1783,14 @@ ModelPlot model_plot_of(const vv::CaseVerdict& verdict, const vv::FigureRequest&
 RowChart decomposition_of(const vv::CaseVerdict& verdict, const vv::FigureRequest& request) {
   RowChart chart;
   const std::vector<Member> members = members_of(verdict, request);
-  const Look baseline = look_of_series(5);
-  Look changed = look_of_series(1);
-  changed.pattern = Look::Pattern::light;
+  Look baseline = look_of_series(5), changed = look_of_series(1);
+  baseline.pattern = changed.pattern = Look::Pattern::light;
   chart.series = {{"baseline", baseline}, {"one cause changed", changed}};
   for (const std::string& name : distinct(members, [](const Member& m) { return m.panel; }))
     for (const std::string& metric : request.metrics) {
       chart.panels.push_back(decomposition_panel(in_panel(members, name), verdict, request, metric));
-      chart.panels.back().title = name;
+      chart.panels.back().title =
+          name.empty() ? capitalised(name_of_metric(metric, verdict.definition)) : name;
     }
   if (chart.panels.empty()) chart.panels.push_back({"No run was selected for this figure.", {}, {}, {}});
   chart.stamp = stamp_of(verdict, members);

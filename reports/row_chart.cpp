@@ -115,8 +115,12 @@ Layout::Panel draw_panel(Canvas& canvas, const Placed& placed, const std::string
   Layout::Panel layout;
   layout.frame = f;
   draw_axis(canvas, placed);
-  for (const RowLine& line : placed.panel->lines)
-    canvas.line({{placed.at(line.value), f.top}, {placed.at(line.value), f.bottom}}, line.stroke);
+  const auto draw_lines = [&](bool above) {
+    for (const RowLine& line : placed.panel->lines)
+      if (line.above == above)
+        canvas.line({{placed.at(line.value), f.top}, {placed.at(line.value), f.bottom}}, line.stroke);
+  };
+  draw_lines(false);
   double top = f.top + row_padding;
   for (const Row& row : placed.panel->rows) {
     const double height = row_height(row) - row_padding;
@@ -126,6 +130,7 @@ Layout::Panel draw_panel(Canvas& canvas, const Placed& placed, const std::string
       draw_bar(canvas, placed, row.bars[b], top + (static_cast<double>(b) + 0.5) * bar_slot, layout);
     top += row_height(row);
   }
+  draw_lines(true);
   draw_outline(canvas, f);
   canvas.text({outer_margin, f.top - 6.5}, tag + placed.panel->title,
               text_style(Horizontal::left, Vertical::baseline, title_size));

@@ -30,6 +30,7 @@ struct RowLine {
   double value = 0.0;
   std::string legend;
   Stroke stroke;
+  bool above = false;  ///< over the bars, not behind them
 };
 
 struct RowPanel {

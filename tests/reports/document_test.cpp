@@ -224,10 +224,12 @@ TEST(Document, ReadingsHaveTheirTitlesAndTheirLimit) {
   vv::SeriesVerdict& series = refined.series.back();
   series.metrics["reading.deep"] = {7e4, 6e4, 5.5e4};
   series.convergence["reading.deep"].extrapolated = 5e4;
+  series.convergence["reading.deep"].order = 1.25;
+  series.orders["reading.deep"] = {0.22, 0.13};
   series.convergence["reading.deep"].uncertainty = 0.12;
   std::string html = report_html(campaign, {});
   EXPECT_TRUE(has(html, "<td>pressure at &lt;25 mm&gt; <code>reading.deep</code></td>"));
-  EXPECT_TRUE(has(html, "<td>50000; ±12 %</td>"));
+  EXPECT_TRUE(has(html, "<td>1.25</td><td>50000; ±12 %</td>"));
   EXPECT_TRUE(has(html, "<th class=\"n\">pressure at &lt;25 mm&gt; [Pa]</th>"));
   EXPECT_TRUE(has(html, "Readings"));
   series.convergence["reading.deep"].extrapolated = std::numeric_limits<double>::quiet_NaN();

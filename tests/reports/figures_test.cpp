@@ -408,7 +408,7 @@ TEST(Convergence, ReadingsHaveLinearAxesFromZeroAndTheirLimitThere) {
   }
   EXPECT_EQ(bars, 2);
   EXPECT_EQ(limits, 1) << "nothing is extrapolated where the order is not reliable";
-  EXPECT_TRUE(notes_mention(panel, "Observed orders of uGIMP: 1.00"));
+  EXPECT_TRUE(notes_mention(panel, "uGIMP: observed order 1.00, finest value ± 10 %"));
   EXPECT_TRUE(notes_mention(panel, "At <i>h</i> = 0"));
   EXPECT_EQ(draw(plot_of(readings(), figure)).layout.panels[0].outside, 0);
 }
