@@ -343,6 +343,11 @@ data metric_tables(const vv::CaseVerdict& verdict) {
   return result;
 }
 
+/// In megabytes; a dash for what was not recorded.
+std::string memory_markup(std::int64_t bytes) {
+  return bytes > 0 ? number_markup(static_cast<double>(bytes) / 1e6) : "–";
+}
+
 data run_rows(const vv::CaseVerdict& verdict) {
   data rows = list();
   for (const vv::RunVerdict& run : verdict.runs) {
@@ -354,7 +359,8 @@ data run_rows(const vv::CaseVerdict& verdict) {
                        {"particle_steps", count_markup(record.cost.particle_steps)},
                        {"time_step", number_markup(record.time_step)},
                        {"end_time", number_markup(record.end_time)},
-                       {"wall", number_markup(record.cost.wall_seconds)}});
+                       {"wall", number_markup(record.cost.wall_seconds)},
+                       {"memory", memory_markup(record.cost.memory_bytes)}});
     row.set("bad", flag(!record.completed()));
     rows << row;
   }
