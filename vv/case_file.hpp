@@ -40,8 +40,7 @@ enum class Statistic {
   least_ratio,   ///< smallest (next / previous) along the series; above 1 means it grows at every step
   spread,        ///< (largest - smallest) / magnitude of the mean, of the series
   curve_spread,  ///< how far apart the curves of the series are: `curve_spread` of vv/curves.hpp
-  discretisation_uncertainty,  ///< of the last value, relative to it: `grid_convergence` of
-                               ///< vv/grid_convergence.hpp
+  discretisation_uncertainty,  ///< of the finest value: `grid_convergence` of vv/grid_convergence.hpp
 };
 
 /// A sweep value that restricts a gate or a figure to some runs: parameter and allowed values.
@@ -52,14 +51,10 @@ struct Selector {
 
 struct Gate {
   std::string id;
-  std::string
-      metric;  ///< a name in `metric_catalogue()` of vv/norms.hpp, or a reading; empty for curve_spread
-  std::string curve;  ///< of curve_spread: name of a curve of the runs
-  std::optional<double> from =
-      {};  ///< of curve_spread: abscissa at which it begins; else where all curves do
-  std::optional<double> up_to =
-      {};               ///< of curve_spread: abscissa at which it ends; else where the first curve does
-  double within = 0.0;  ///< of curve_spread: half-width of the moving mean of abscissae; 0 for none
+  std::string metric;  ///< a name in `metric_catalogue()` of vv/norms.hpp or a reading; empty for a curve
+  std::string curve;   ///< of curve_spread: name of a curve of the runs
+  std::optional<double> from, up_to;  ///< of curve_spread: its ends; else those that all curves share
+  double within = 0.0;                ///< of curve_spread: half-width of a moving mean; 0 for none
   Statistic statistic = Statistic::value;
   std::string across;  ///< swept parameter that makes the series, for the series statistics; else empty
   std::vector<Selector> where;

@@ -56,8 +56,7 @@ struct SeriesVerdict {
   std::vector<double> cell_size;                       ///< [m], from coarse to fine, one entry per run
   std::map<std::string, std::vector<double>> metrics;  ///< NaN where a run has none
   std::map<std::string, std::vector<double>> orders;   ///< observed order of each neighbouring pair
-  std::map<std::string, GridConvergence>
-      convergence;  ///< of readings and load curves over three levels or more
+  std::map<std::string, GridConvergence> convergence;  ///< of readings and load curves; three levels or more
   std::vector<GateResult> gates;
 };
 

@@ -309,6 +309,11 @@ TEST(CaseFile, refines_by_what_a_variant_and_the_scene_as_written_say) {
   text["sweep"][0]["variants"][2]["set"].erase("/scene/grid/cell_size");
   expect_message(refusal_of(text.dump()), "column.json", "/gates/2/across",
                  "makes the cell size smaller from each value to the next", "\"setting\"");
+  // Nor does a variant have the cell size of the one before it, which here would not be smaller.
+  Json& variants = text["sweep"][0]["variants"];
+  variants = Json::parse(R"([{ "name": "coarse", "set": { "/scene/grid/cell_size": "0.2 m" } },
+    { "name": "as written", "set": {} }, { "name": "finest, 20G", "set": { "/scene/grid/cell_size": "0.05 m" } }])");
+  EXPECT_EQ(refusal_of(text.dump()), "");
 }
 
 TEST(CaseFile, says_which_variant_is_wrong_and_where) {
