@@ -29,7 +29,7 @@ class Interrupted : public std::runtime_error {
 /// Runs every run of every case and judges them.
 ///
 /// Each finished record is stored at once and used again by a later campaign with the same inputs and the
-/// same program; a record file that cannot be read, or whose text was altered, is ignored and the run redone.
+/// same `program_hash`; a record file that cannot be read, or whose text was altered, is ignored and the run redone.
 /// A run that throws becomes a failed run, with the reason, and is not stored. Runs of cases with
 /// `repeat_on_other_threads` are executed again in a pool of another size (two threads instead of one, else
 /// one).

@@ -19,7 +19,6 @@
 #include <system_error>
 
 #include "vv/metamorphic.hpp"
-#include "vv/revision.hpp"
 #include "vv/sampler.hpp"
 
 namespace mpm::vv {
@@ -574,18 +573,6 @@ void write_and_sync(const std::filesystem::path& path, const std::string& text) 
   if (::fsync(file.value()) != 0) fail(path, "write");
 }
 
-std::string hash_of_program() {
-  std::ifstream program("/proc/self/exe", std::ios::binary);
-  if (!program) throw std::runtime_error("cannot read the running program to identify it");
-  Fnv1a hash;
-  std::vector<char> block(1 << 16);
-  while (program) {
-    program.read(block.data(), static_cast<std::streamsize>(block.size()));
-    hash.add(block.data(), static_cast<std::size_t>(program.gcount()));
-  }
-  return hash.digits();
-}
-
 /// Runs the scene in another description and compares the ends. Infinite if that run does not complete.
 double difference_to(const Scene& scene, const std::string& metamorphosis, const ParticleFields& end,
                      const Pulse& pulse) {
@@ -701,13 +688,11 @@ Record record_from_json(const Json& json) {
   return record;
 }
 
-Record simulate(const Case& definition, const RunRequest& request, const Pulse& pulse) {
+Record unsigned_record(const Case& definition, const RunRequest& request, const Pulse& pulse) {
   Record record = request.element ? record_element_test(*request.element, pulse)
                                   : record_scene(definition, request, pulse);
   record.case_id = definition.id;
   record.input_hash = input_hash(definition, request);
-  record.program_hash = program_hash();
-  record.revision = build_facts().revision;
   return record;
 }
 
@@ -725,11 +710,6 @@ std::string input_hash(const Case& definition, const RunRequest& request) {
   }
   if (!definition.metamorphoses.empty()) input["metamorphoses"] = definition.metamorphoses;
   return hash_of(input.dump());
-}
-
-std::string program_hash() {
-  static const std::string hash = hash_of_program();
-  return hash;
 }
 
 std::string hash_of(const std::string& text) {

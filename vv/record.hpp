@@ -56,7 +56,7 @@ struct Cost {
 struct Record {
   std::string case_id;
   std::string input_hash;    ///< of the resolved scene, probes and snapshots
-  std::string program_hash;  ///< of the program that ran it
+  std::string program_hash;  ///< of the part that simulates of the program that ran it
   std::string revision;      ///< of the source tree that program was built from
   int threads = 1;           ///< of the pool the run was part of
   int step_threads = 1;      ///< that shared the work of each of its steps
@@ -114,7 +114,12 @@ Record simulate(const Case& definition, const RunRequest& request, const Pulse& 
 /// hexadecimal digits.
 std::string input_hash(const Case& definition, const RunRequest& request);
 
-/// Hash of the program that is running; 16 hexadecimal digits, read once.
+/// As `simulate`, without program and revision.
+Record unsigned_record(const Case& definition, const RunRequest& request, const Pulse& pulse);
+
+/// Hash of the part of this program that simulates; hexadecimal digits. It is that of the compiled libraries
+/// which turn a scene into a record, so it tells another solver, compiler or set of flags, and does not tell
+/// another gate, figure or page.
 std::string program_hash();
 
 /// Hash of a text; 16 hexadecimal digits [FNV-1a, 64 bit].

@@ -9,6 +9,7 @@ struct BuildFacts {
   const char* compiler;  ///< name and version
   const char* build;     ///< build type and compiler flags
   const char* source_directory;  ///< absolute
+  const char* simulation;        ///< hash of the compiled libraries that simulate, hexadecimal digits
 };
 
 /// Written by the build itself (vv/revision.cmake), anew whenever the revision changes.

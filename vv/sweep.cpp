@@ -237,7 +237,8 @@ void remove(const std::vector<const Variant*>& variants, Subject& subject) {
     const bool is_index = last.find_first_not_of("0123456789") == std::string::npos;
     return is_index ? std::stoll(last) : -1;
   };
-  std::stable_sort(places.begin(), places.end(), [&](const auto& a, const auto& b) { return index_of(a) > index_of(b); });
+  std::stable_sort(places.begin(), places.end(),
+                   [&](const auto& a, const auto& b) { return index_of(a) > index_of(b); });
   for (const Json::json_pointer& place : places) {
     Json& parent = subject.text.at(place.parent_pointer());
     if (parent.is_array()) {
@@ -254,8 +255,8 @@ void put_alone(const SweepAxis& axis, std::size_t chosen, Subject& subject) {
   if (!axis.variants.empty()) remove({&axis.variants[chosen]}, subject);
 }
 
-/// Where in the case file the value stands that a variant puts at or above `pointer`; `variant_pointer` is its
-/// own place.
+/// Where in the case file the value stands that a variant puts at or above `pointer`; `variant_pointer` is
+/// its own place.
 std::string source_in_variant(const std::string& pointer, const Variant& variant,
                               const std::string& variant_pointer) {
   for (const auto& [parameter, value] : variant.set) {
@@ -271,7 +272,8 @@ std::string source_in_variant(const std::string& pointer, const Variant& variant
 std::string source_of(const std::string& pointer, const std::vector<SweepAxis>& sweep, const Choice& choice,
                       std::size_t axis) {
   if (!sweep[axis].variants.empty()) {
-    return source_in_variant(pointer, sweep[axis].variants[choice[axis]], chosen_pointer(sweep, choice, axis));
+    return source_in_variant(pointer, sweep[axis].variants[choice[axis]],
+                             chosen_pointer(sweep, choice, axis));
   }
   if (const std::string& parameter = sweep[axis].parameter; at_or_below(pointer, parameter))
     return chosen_pointer(sweep, choice, axis) + pointer.substr(parameter.size());

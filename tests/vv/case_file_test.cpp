@@ -277,17 +277,24 @@ TEST(CaseFile, sweeps_over_variants_that_have_names) {
 
 TEST(CaseFile, has_variants_without_something_or_with_more) {
   Json text = valid_case();
-  text["scene"]["bodies"].push_back(text["scene"]["bodies"][1]);
-  text["scene"]["bodies"][1]["upper"] = {"0.75 m"};
-  text["scene"]["bodies"][2]["lower"] = {"0.75 m"};
-  text["scene"]["bodies"][2]["name"] = "top";
+  const Json column = text["scene"]["bodies"][0];
+  const char* places[] = {"0 m", "0.3 m", "0.6 m", "1 m"};
+  const char* names[] = {"bottom", "middle", "top"};
+  text["scene"]["bodies"] = Json::array();
+  for (int k = 0; k < 3; ++k) {
+    Json body = column;
+    body["name"] = names[k];
+    body["lower"] = {places[k]};
+    body["upper"] = {places[k + 1]};
+    text["scene"]["bodies"].push_back(body);
+  }
   text["scene"].erase("update_order");
   text["sweep"] = Json::parse(R"([
       { "name": "top", "variants": [
         { "name": "all", "set": {} },
         { "name": "no middle", "set": { "/scene/update_order": "usl" }, "remove": ["/scene/bodies/1"] } ] },
       { "parameter": "/scene/bodies/2/density", "values": ["2 t/m^3", "3 t/m^3"] } ])");
-  for (const char* key : {"gates", "figures"}) text[key] = Json::array();
+  for (const char* key : {"gates", "figures", "references"}) text[key] = Json::array();
   text.erase("claims");
   text["gates"].push_back(Json::parse(R"({ "id": "end", "metric": "completed", "at_least": 1,
       "basis": "requirement", "reason": "a reason" })"));
@@ -357,7 +364,7 @@ TEST(CaseFile, says_which_variant_is_wrong_and_where) {
       {R"([{"op": "add", "path": "/sweep/0/variants/1/remove", "value": ["/scene/grid"]}])",
        "/sweep/0/variants/1/remove/0", "a value that the variant does not set", "beside /scene/grid/cell_size",
        false},
-      {R"([{"op": "add", "path": "/sweep/0/variants/0/remove", "value": ["/scene/bodies", "/scene/bodies/1"]}])",
+      {R"([{"op": "add", "path": "/sweep/0/variants/0/remove", "value": ["/scene/bodies", "/scene/bodies/0"]}])",
        "/sweep/0/variants/0/remove/1", "each value once", "beside /scene/bodies", false},
       {R"([{"op": "add", "path": "/sweep/0/variants/0/remove", "value": ["/scene/bodies"]}])",
        "/sweep/0/variants/0", "a variant with which /scene/bodies is", "", false},

@@ -222,8 +222,10 @@ TEST(BlockFooting, NeedsBothProbes) {
 
 TEST(LoadCurve, IsThatOfTheLoadWhateverPresses) {
   const std::vector<double> time{1, 2, 3, 4}, load{40, 40, 80, 120}, descent{0, 0, -1, -2};
-  const Sampled by_weight({recorded("displacement", "block", "y", time, descent), recorded("weight", "block", "", time, load)});
-  const Sampled by_load({recorded("displacement", "block", "y", time, descent), recorded("load", "block", "", time, load)});
+  const Sampled by_weight(
+      {recorded("displacement", "block", "y", time, descent), recorded("weight", "block", "", time, load)});
+  const Sampled by_load(
+      {recorded("displacement", "block", "y", time, descent), recorded("load", "block", "", time, load)});
   expect_near(by_load.curve(block_model(clay()))->pressure, by_weight.curve(block_model(clay()))->pressure);
   const Sampled reaction({recorded("reaction", "strip", "y", time, load)});
   const Sampled rigid_load({recorded("load", "strip", "", time, load)});

@@ -528,7 +528,7 @@ const std::vector<Malformed>& malformed_footings() {
       {R"([{"op": "replace", "path": "/probes/0/at", "value": ["0.95 m", "1.15 m"]}])", "/probes/0/at",
        "a place within one particle spacing of a particle", "which hits none", Schema::cannot_tell},
       {R"([{"op": "replace", "path": "/probes/0/quantity", "value": "temperature"}])", "/probes/0/quantity",
-       "one of displacement, velocity, stress, reaction, weight", "\"temperature\"", Schema::refuses},
+       "one of displacement, velocity, stress, reaction, load, weight", "\"temperature\"", Schema::refuses},
       {R"([{"op": "remove", "path": "/scene/rigid_bodies"}, {"op": "remove", "path": "/snapshots"}, {"op": "remove", "path": "/figures"}, {"op": "remove", "path": "/probes/1"}])",
        "/probes/1/of", "the name of a rigid body, of which the scene has none", "\"footing\"",
        Schema::cannot_tell},

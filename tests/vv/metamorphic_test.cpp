@@ -350,9 +350,9 @@ TEST(Metamorphosis, TransformsWhatItSays) {
   EXPECT_EQ(std::get<GivenTimeStep>(other.time_step).seconds, 1e-4 * 128);
   EXPECT_EQ(std::get<AtRest>(other.termination).deadline, 256.0);
   staged.termination = AtDisplacement{staged.bodies[0].name, 1, -0.01, 2.0};
-  const auto turned = std::get<AtDisplacement>(transformed(staged, "rotate_90").termination);
-  EXPECT_EQ(turned.axis, 0);
-  EXPECT_EQ(turned.displacement, 0.01);  // downwards becomes rightwards: a quarter turn anticlockwise
+  const auto moved = std::get<AtDisplacement>(transformed(staged, "rotate_90").termination);
+  EXPECT_EQ(moved.axis, 0);
+  EXPECT_EQ(moved.displacement, 0.01);  // downwards becomes rightwards: a quarter turn anticlockwise
   EXPECT_EQ(std::get<AtDisplacement>(transformed(staged, "binary_units").termination).deadline, 256.0);
 }
 

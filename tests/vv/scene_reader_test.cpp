@@ -69,10 +69,10 @@ TEST(CaseFile, reads_the_other_choices_of_a_scene) {
   EXPECT_EQ(std::get<GivenTimeStep>(scene.time_step).seconds, 4e-5);
   EXPECT_EQ(std::get<AtTime>(scene.termination).time, 2.0);
 
-  text["scene"]["termination"] = {{"type", "at_displacement"}, {"body", text["scene"]["bodies"][1]["name"]},
+  text["scene"]["termination"] = {{"type", "at_displacement"}, {"body", text["scene"]["bodies"][0]["name"]},
                                   {"displacement", "-2 mm"},   {"deadline", "3 s"}};
   const AtDisplacement end = std::get<AtDisplacement>(parsed(text).runs.front().scene.termination);
-  EXPECT_EQ(end.body, text["scene"]["bodies"][1]["name"].get<std::string>());
+  EXPECT_EQ(end.body, text["scene"]["bodies"][0]["name"].get<std::string>());
   EXPECT_EQ(end.axis, 0);
   EXPECT_EQ(end.displacement, -0.002);
   EXPECT_EQ(end.deadline, 3.0);
