@@ -699,6 +699,7 @@ struct Line {
   std::string label;
   Look look;
   int layer = 0;
+  std::optional<Look> sample = std::nullopt;  ///< in the legend, when it is not the curve's own look
 };
 
 /// The member that alone has a curve like this; null if several have.
@@ -724,10 +725,14 @@ std::vector<Line> lines_of(const std::vector<Member>& members, const vv::FigureR
   for (std::size_t i = 0; i < references.size(); ++i) {
     const std::vector<const vv::Curve*> curves = reference_curves(members, request.quantity, references[i]);
     for (const vv::Curve* curve : curves) {
-      Look look = dashed_reference_look(i);
-      const Member* owner = curves.size() > 1 ? only_owner(members, *curve) : nullptr;
-      if (owner) look.color = line_look(*owner).color;
-      lines.push_back({curve, name_of_reference(references[i]), look, 3});
+      Line line{curve, name_of_reference(references[i]), dashed_reference_look(i), 3};
+      if (const Member* owner = curves.size() > 1 ? only_owner(members, *curve) : nullptr) {
+        // Thin and pale beside the run of its colour, whose own line may be dashed too.
+        line.sample = line.look;
+        line.look.color = tint(line_look(*owner).color, 0.25);
+        line.look.line_width = 0.8;
+      }
+      lines.push_back(std::move(line));
     }
   }
   return lines;
@@ -779,7 +784,7 @@ void mark_bends(Panel& panel, const std::vector<Member>& members, double settlem
                               {settlement * settlement_factor},
                               4});
     }
-  if (any[0]) panel.curves.push_back({"bend", look(0, ink), {}, {}, 0});
+  if (any[0]) panel.curves.push_back({"bend of the straight pieces fitted", look(0, ink), {}, {}, 0});
   if (any[1]) panel.curves.push_back({"second bend", look(1, ink), {}, {}, 0});
 }
 
@@ -838,6 +843,7 @@ Panel curve_panel(const std::vector<Member>& members, const vv::FigureRequest& r
   y.range = {y_range.lower * y_factor, y_range.upper * y_factor};
   x.reversed = settles;
   for (const Line& line : lines) {
+    if (line.sample) panel.curves.push_back({line.label, *line.sample, {}, {}, 0});
     PlotCurve curve{line.label, line.look, line.curve->x, line.curve->y, line.layer};
     for (double& value : curve.x) value *= x_factor;
     for (double& value : curve.y) value *= y_factor;
