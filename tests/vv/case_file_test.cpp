@@ -294,7 +294,7 @@ TEST(CaseFile, has_variants_without_something_or_with_more) {
         { "name": "all", "set": {} },
         { "name": "no middle", "set": { "/scene/update_order": "usl" }, "remove": ["/scene/bodies/1"] } ] },
       { "parameter": "/scene/bodies/2/density", "values": ["2 t/m^3", "3 t/m^3"] } ])");
-  for (const char* key : {"gates", "figures", "references"}) text[key] = Json::array();
+  for (const char* key : {"gates", "figures", "references", "probes", "snapshots"}) text[key] = Json::array();
   text.erase("claims");
   text["gates"].push_back(Json::parse(R"({ "id": "end", "metric": "completed", "at_least": 1,
       "basis": "requirement", "reason": "a reason" })"));
