@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 #include <set>
@@ -380,15 +381,25 @@ std::string limit_of(const vv::SeriesVerdict& series, const std::string& metric)
   return extrapolated + "; ±" + number_markup(100.0 * convergence.uncertainty, 2) + " %";
 }
 
+/// The cell sizes of a series, or what else its levels differ by.
+std::vector<std::string> names_of_levels(const vv::SeriesVerdict& series) {
+  const std::vector<double>& sizes = series.cell_size;
+  const bool refines = std::adjacent_find(sizes.begin(), sizes.end(), std::not_equal_to<>()) != sizes.end();
+  std::vector<std::string> names;
+  for (std::size_t k = 0; k < sizes.size(); ++k) {
+    names.push_back(refines || k >= series.values.size()
+                        ? fmt::format("<i>h</i> = {:.4g} mm", sizes[k] * 1e3)
+                        : name_of_parameter(series.across, series.values[k]));
+  }
+  return names;
+}
+
 /// Metrics of a refinement: errors and readings, not counts.
 data series_tables(const vv::CaseVerdict& verdict) {
   data tables = list();
   for (const vv::SeriesVerdict& series : verdict.series) {
     data table = object({{"name", series.fixed.empty() ? "All runs" : name_of_run(series.fixed)}});
-    std::vector<std::string> sizes;
-    for (const double size : series.cell_size)
-      sizes.push_back(fmt::format("<i>h</i> = {:.4g} mm", size * 1e3));
-    table.set("sizes", text_cells(sizes));
+    table.set("sizes", text_cells(names_of_levels(series)));
     data rows = list();
     for (const std::string& metric : metrics_in_order(verdict)) {
       const auto found = series.metrics.find(metric);
@@ -433,6 +444,21 @@ std::string sweep_sentence(const vv::CaseVerdict& verdict) {
                      verdict.runs.size() == 1 ? "" : "s");
 }
 
+/// What a reference solution of a footing says, in markup; empty for any other. Symbols are those of
+/// reference/bearing_capacity.hpp, s is the settlement.
+std::string formula_of(const std::string& reference) {
+  const std::string factors =
+      "<i>c</i> <i>N</i><sub>c</sub> + {} <i>N</i><sub>q</sub> + ½ <i>γ</i> <i>B</i> <i>N</i><sub>γ</sub>";
+  if (reference == "terzaghi")
+    return fmt::format(fmt::runtime(factors), "<i>q</i>") +
+           ", Terzaghi’s formulas and chart, a footing on the surface";
+  if (reference == "embedded_limit")
+    return fmt::format(fmt::runtime(factors), "(<i>q</i> + <i>γ</i> <i>s</i>)") +
+           ", exact factors, a footing that has gone down by <i>s</i>; the sum is conservative";
+  if (reference == "elastic_layer") return "the exact stiffness of the ground before anything yields";
+  return "";
+}
+
 void set_exact_solutions(data& section, const vv::Case& definition) {
   data others = list();
   bool known = false;
@@ -441,10 +467,13 @@ void set_exact_solutions(data& section, const vv::Case& definition) {
       section.set("exact_" + reference, flag(true));
       known = true;
     } else {
-      others << object({{"name", name_of_reference(reference)}});
+      data other = object({{"name", name_of_reference(reference)}});
+      if (const std::string formula = formula_of(reference); !formula.empty()) other.set("formula", formula);
+      others << other;
     }
   }
   section.set("has_exact", flag(known || !others.is_empty_list()));
+  section.set("has_column_solution", flag(known));
   section.set("exact_other", others);
 }
 

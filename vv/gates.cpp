@@ -440,6 +440,8 @@ class Bench {
     series.across = across;
     series.fixed = group.fixed;
     series.cell_size = cell_sizes_of(group);
+    for (const std::size_t run : group.runs)
+      series.values.push_back(*value_of(definition().runs[run].parameters, across));
     const std::vector<const RunVerdict*> levels = levels_of(group);
     for (const RunVerdict* level : levels) {
       for (const auto& metric : level->metrics) series.metrics[metric.first];

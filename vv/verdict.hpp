@@ -53,6 +53,7 @@ struct RunVerdict {
 struct SeriesVerdict {
   std::string across;                                  ///< the swept parameter
   std::vector<std::pair<std::string, Json>> fixed;     ///< the other parameters of the group
+  std::vector<Json> values;                            ///< of that parameter, one entry per run
   std::vector<double> cell_size;                       ///< [m], from coarse to fine, one entry per run
   std::map<std::string, std::vector<double>> metrics;  ///< NaN where a run has none
   std::map<std::string, std::vector<double>> orders;   ///< observed order of each neighbouring pair

@@ -236,6 +236,26 @@ TEST(Document, ReadingsHaveTheirTitlesAndTheirLimit) {
   EXPECT_TRUE(has(report_html(campaign, {}), "<td>none; ±12 %</td>"));
 }
 
+TEST(Document, NamesTheLevelsOfASeriesByWhatTheyDifferBy) {
+  vv::CampaignVerdict campaign = support::demo_campaign();
+  vv::SeriesVerdict& series = campaign.cases[1].series.back();
+  series.across = "remedy";
+  series.values = {"none", "<some>", "all"};
+  EXPECT_FALSE(has(report_html(campaign, {}), "<th class=\"n\">&lt;some&gt;</th>")) << "cells refine it";
+  series.cell_size.assign(3, 0.01);
+  EXPECT_TRUE(has(report_html(campaign, {}), "<th class=\"n\">&lt;some&gt;</th>"));
+}
+
+TEST(Document, SaysWhatAReferenceOfAFootingIs) {
+  vv::CampaignVerdict campaign = support::demo_campaign();
+  campaign.cases = {support::demo_footing(20)};
+  campaign.cases[0].definition.references = {"terzaghi", "embedded_limit"};
+  const std::string html = report_html(campaign, {});
+  EXPECT_TRUE(has(html, "Terzaghi’s formulas and chart"));
+  EXPECT_TRUE(has(html, "(<i>q</i> + <i>γ</i> <i>s</i>) <i>N</i><sub>q</sub>"));
+  EXPECT_FALSE(has(html, "initial height of the\ncolumn")) << "symbols of columns";
+}
+
 TEST(Document, TellsWhenAFigureCouldNotBeDrawn) {
   const std::string html =
       report_html(support::demo_campaign(), {{"column_figure_1", "stress", "", 0, "no renderer"}});

@@ -141,6 +141,7 @@ TEST(Simulation, SaysWhenTheDeadlineComesBeforeRest) {
 TEST(Simulation, EndsWhenABodyHasMovedAsFarAsAskedFor) {
   Scene scene = column_scene(Scheme::cpgimp);
   const std::string name = scene.bodies[0].name;
+  scene.gravity.loading = RampLoading{1.0};
   scene.termination = AtDisplacement{name, 0, -1e-4, 5.0};
   const Simulation simulation = run_to_end(scene);
   EXPECT_EQ(simulation.outcome().ending, Ending::reached_displacement);

@@ -506,6 +506,9 @@ TEST(Series, HoldsEveryGroupFromCoarseToFineWithItsOrders) {
   EXPECT_EQ(mpm_series.fixed[0].second, "mpm");
   EXPECT_TRUE(mpm_series.gates.empty());
   EXPECT_EQ(cpgimp.cell_size, (std::vector<double>{0.4, 0.2, 0.1}));
+  ASSERT_EQ(cpgimp.values.size(), 3u);
+  EXPECT_NE(cpgimp.values[0], cpgimp.values[1]);
+  EXPECT_NE(cpgimp.values[1], cpgimp.values[2]);
   ASSERT_EQ(cpgimp.orders.at("error").size(), 2u);
   EXPECT_NEAR(cpgimp.orders.at("error")[0], 2.0, 1e-12);
   EXPECT_NEAR(cpgimp.orders.at("error")[1], 2.0, 1e-12);
