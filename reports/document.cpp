@@ -52,6 +52,8 @@ std::string chip_of(vv::GateStatus status) {
       return chip("expected", "red as expected");
     case vv::GateStatus::unexpectedly_green:
       return chip("fail", "GREEN, must be red");
+    case vv::GateStatus::no_measurement:
+      return chip("open", "no measurement");
   }
   return chip("fail", "UNKNOWN");
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "solver/scene.hpp"
+#include "vv/curve_file.hpp"
 #include "vv/element_test.hpp"
 
 namespace mpm::reference {
@@ -41,6 +42,11 @@ enum class Statistic {
   spread,        ///< (largest - smallest) / magnitude of the mean, of the series
   curve_spread,  ///< how far apart the curves of the series are: `curve_spread` of vv/curves.hpp
   discretisation_uncertainty,  ///< of the finest value: `grid_convergence` of vv/grid_convergence.hpp
+  power_exponent,     ///< n of the least-squares power law metric = c over^n of the series
+  power_coefficient,  ///< c of the same
+  bias,           ///< of pairs: `ModelFactor::bias` of vv/measurement.hpp
+  scatter,        ///< of pairs: `ModelFactor::scatter`
+  model_scatter,  ///< of pairs: `ModelFactor::model_scatter`
 };
 
 /// A sweep value that restricts a gate or a figure to some runs: parameter and allowed values.
@@ -53,6 +59,8 @@ struct Gate {
   std::string id;
   std::string metric;  ///< a name in `metric_catalogue()` of vv/norms.hpp or a reading; empty for a curve
   std::string curve;   ///< of curve_spread: name of a curve of the runs
+  std::string over;    ///< of power laws: the metric that is the abscissa
+  std::string pairs;   ///< of bias and scatter: id of the case's pairs
   std::optional<double> from, up_to;  ///< of curve_spread: its ends; else those that all curves share
   double within = 0.0;                ///< of curve_spread: half-width of a moving mean; 0 for none
   Statistic statistic = Statistic::value;
@@ -144,6 +152,40 @@ struct Reading {
   std::string over;  ///< a reference solution by whose curve, read alike, the number is divided; may be empty
 };
 
+/// A scalar of a snapshot along a straight line through the scene: a curve of each run.
+struct Cut {
+  std::string id;        ///< names the curve
+  std::string quantity;  ///< a name in `field_catalogue()` of vv/field_map.hpp
+  int snapshot = 0;      ///< index into the case's snapshots
+  std::size_t along = 0;  ///< axis that the line runs along, 0 or 1: the abscissa is the place along it
+  double at = 0.0;       ///< where the line crosses the other axis [m]
+};
+
+/// A measured curve that a curve of the runs is compared with.
+struct Measurement {
+  std::string id;
+  std::shared_ptr<const CurveFile> file;
+  std::size_t column = 1;  ///< the ordinate
+  std::string curve;       ///< name of a curve of the runs
+  std::vector<Selector> where;  ///< the runs that are compared
+  std::string numerical;        ///< axis of refinement whose runs tell the uncertainty of the discretisation; may be empty
+  std::vector<std::string> inputs;  ///< axes whose values are all as likely: what is not known of the scene
+  double within = 0.0;    ///< half-width of the mean that the runs' curves are read with; 0 for none
+  double accuracy = 0.0;  ///< what 2 u_val is asked to be at most, over the largest measured magnitude [-]
+  std::string reason;     ///< why that accuracy, for a person
+};
+
+/// Single measurements beside what a formula or the runs predict for them.
+struct PairedPrediction {
+  std::string id, title;
+  std::shared_ptr<const CurveFile> file;
+  std::size_t column = 0;  ///< what was measured
+  std::string formula;     ///< predicted by a formula of reference/ over the other columns; or
+  std::string metric;      ///< by a metric of the runs
+  std::string across;      ///< whose axis has the names of the rows for values
+  std::vector<Selector> where;
+};
+
 /// The part of a two-dimensional scene that a figure shows.
 struct ViewRequest {
   PerAxis lower{}, upper{};  ///< [m], lower below upper along both axes
@@ -152,7 +194,7 @@ struct ViewRequest {
 /// A picture the report draws from the verdict of the case.
 struct FigureRequest {
   std::string id;
-  std::string kind;      ///< profiles, convergence, bars, history, curves, fields, model
+  std::string kind;      ///< profiles, convergence, bars, history, curves, fields, model, decomposition, pairs, trend
   std::string caption;
   std::string panels;    ///< swept parameter that separates panels; may be empty
   std::string series;    ///< swept parameter that separates curves; may be empty
@@ -167,6 +209,11 @@ struct FigureRequest {
   std::optional<ViewRequest> view = std::nullopt;  ///< fields: the part to show; without one, all particles
   bool marks = false;                              ///< curves: whether the bends that were found are marked
   std::vector<double> stages = {};  ///< curves of pressure: settlements of note, from small to large [m]
+  std::vector<std::string> measurements = {};  ///< curves: compared; fields: drawn on top as lines. Ids of the case's
+  std::vector<std::string> pairs = {};         ///< pairs: ids of the case's paired predictions
+  std::string abscissa = {};                   ///< trend: the metric along x; `metrics` are along y, `over` the axis
+  /// Trend: published curves drawn beside the runs.
+  std::vector<std::shared_ptr<const CurveFile>> published = {};
 };
 
 /// One run of a sweep: its parameters, the resolved scene or element test, and its own text (for hashing).
@@ -194,6 +241,9 @@ struct Case {
   std::vector<RunRequest> runs;
   std::vector<HistoryProbe> probes;
   std::vector<SnapshotRequest> snapshots;
+  std::vector<Cut> cuts;
+  std::vector<Measurement> measurements;
+  std::vector<PairedPrediction> pairs;
   std::vector<Reading> readings;
   std::vector<Gate> gates;
   std::vector<FigureRequest> figures;

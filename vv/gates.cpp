@@ -155,6 +155,11 @@ double statistic_of(Statistic statistic, const std::vector<double>& values,
       return observed_order(values[last - 1], values[last], cell_size[last - 1], cell_size[last]);
     case Statistic::curve_spread:
     case Statistic::discretisation_uncertainty:
+    case Statistic::power_exponent:
+    case Statistic::power_coefficient:
+    case Statistic::bias:
+    case Statistic::scatter:
+    case Statistic::model_scatter:
       break;  // are more than a number of the values
   }
   return not_measured;
@@ -246,6 +251,16 @@ const char* name_of_statistic(Statistic statistic) {
       return "curve_spread";
     case Statistic::discretisation_uncertainty:
       return "discretisation_uncertainty";
+    case Statistic::power_exponent:
+      return "power_exponent";
+    case Statistic::power_coefficient:
+      return "power_coefficient";
+    case Statistic::bias:
+      return "bias";
+    case Statistic::scatter:
+      return "scatter";
+    case Statistic::model_scatter:
+      return "model_scatter";
   }
   return "value";
 }

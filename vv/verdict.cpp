@@ -47,7 +47,7 @@ Json gates_to_json(const std::vector<GateResult>& gates) {
                     {"op", gate.op},
                     {"threshold", gate.threshold},
                     {"reason", gate.reason},
-                    {"pass", gate.good()},
+                    {"pass", gate.waits() ? Json(nullptr) : Json(gate.good())},
                     {"status", name_of(gate.status)},
                     {"must_fail", gate.must_fail},
                     {"statistic", gate.statistic},
@@ -138,6 +138,7 @@ Json counts_to_json(const Counts& counts) {
           {"gates", counts.gates},
           {"gates_passed", counts.gates_passed},
           {"gates_failed", counts.gates_failed},
+          {"gates_waiting", counts.gates_waiting},
           {"controls", counts.controls},
           {"controls_red", counts.controls_red},
           {"controls_green", counts.controls_green}};
@@ -177,7 +178,7 @@ void count(const GateResult& gate, Counts& counts) {
     ++(gate.good() ? counts.controls_red : counts.controls_green);
   } else {
     ++counts.gates;
-    ++(gate.good() ? counts.gates_passed : counts.gates_failed);
+    ++(gate.waits() ? counts.gates_waiting : gate.good() ? counts.gates_passed : counts.gates_failed);
   }
 }
 
@@ -193,6 +194,8 @@ const char* name_of(GateStatus status) {
       return "red_as_expected";
     case GateStatus::unexpectedly_green:
       return "unexpectedly_green";
+    case GateStatus::no_measurement:
+      return "no_measurement";
   }
   return "fail";
 }

@@ -7,6 +7,7 @@
 
 #include "vv/case_file.hpp"
 #include "vv/grid_convergence.hpp"
+#include "vv/measurement.hpp"
 #include "vv/record.hpp"
 
 namespace mpm::vv {
@@ -18,6 +19,8 @@ struct Curve {
   std::vector<double> x;  ///< initial height X [m], current height x [m], settlement [m] or time [s]: see `x_name`
   std::vector<double> y;
   std::string x_name;  ///< position, initial_position, settlement or time
+  /// Standard uncertainty of each ordinate by the way it was read off the particles; empty if there is none.
+  std::vector<double> uncertainty = {};
 };
 
 enum class GateStatus {
@@ -25,6 +28,7 @@ enum class GateStatus {
   fail,
   red_as_expected,     ///< a must-fail control that did turn red
   unexpectedly_green,  ///< a must-fail control that stayed green: counts as a failure
+  no_measurement,      ///< what it compares with is an empty slot: neither passed nor failed
 };
 
 /// A gate applied to one run or one series of runs.
@@ -37,7 +41,12 @@ struct GateResult {
   bool must_fail = false;
   GateStatus status = GateStatus::fail;
   std::string detail;
-  bool good() const { return status == GateStatus::pass || status == GateStatus::red_as_expected; }
+  /// Nothing is wrong: what could be judged was as it should be.
+  bool good() const {
+    return status == GateStatus::pass || status == GateStatus::red_as_expected || waits();
+  }
+  /// The measurement it needs is not there.
+  bool waits() const { return status == GateStatus::no_measurement; }
 };
 
 struct RunVerdict {
@@ -46,6 +55,7 @@ struct RunVerdict {
   std::map<std::string, double>
       metrics;                ///< only finite values; a metric that could not be measured is absent
   std::vector<Curve> curves;  ///< the run's own and the references it was judged against
+  std::vector<CurveComparison> comparisons;  ///< with measured curves, in the order of the case's measurements
   std::vector<GateResult> gates;
 };
 
@@ -74,13 +84,25 @@ std::string scope_of(const std::vector<std::pair<std::string, Json>>& parameters
 /// holds; NaN without a value or with a threshold of zero.
 double margin(const GateResult& result);
 
+/// Single measurements and what was predicted for them.
+struct PairsVerdict {
+  std::string id, title;
+  std::string unit;         ///< SI, of measured and predicted
+  std::vector<Pair> pairs;  ///< those that could be predicted
+  std::vector<std::string> unpredicted;  ///< names of the runs that have no number, with the reason
+  std::string lack;                      ///< why there is no factor; empty beside one
+  bool missing = false;                  ///< the curve file is an empty slot
+  ModelFactor factor;
+};
+
 struct CaseVerdict {
   Case definition;
   CaseStatus status = CaseStatus::not_run;
   std::string not_run_reason;
   std::vector<RunVerdict> runs;
   std::vector<SeriesVerdict> series;
-  std::vector<GateResult> gates;  ///< those that found nothing to judge: every one a failure
+  std::vector<PairsVerdict> pairs;  ///< in the order of the case's
+  std::vector<GateResult> gates;  ///< on pairs, and those that found nothing to judge: every one of these a failure
 };
 
 /// Every gate result of a case: of its runs, its series and the case as a whole.
@@ -90,6 +112,7 @@ struct Counts {
   int cases = 0, cases_passed = 0, cases_failed = 0, cases_not_run = 0;
   int runs = 0;
   int gates = 0, gates_passed = 0, gates_failed = 0;  ///< of the ordinary gates
+  int gates_waiting = 0;  ///< ordinary gates whose measurement is missing, neither passed nor failed
   int controls = 0, controls_red = 0,
       controls_green = 0;  ///< of the must-fail controls; green: not red as expected
 };
