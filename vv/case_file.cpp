@@ -8,6 +8,7 @@
 #include "vv/curves.hpp"
 #include "vv/field_map.hpp"
 #include "vv/json_reader.hpp"
+#include "vv/measurement_reader.hpp"
 #include "vv/metamorphic.hpp"
 #include "vv/norms.hpp"
 #include "vv/probe_reader.hpp"
@@ -22,23 +23,22 @@ namespace {
 
 bool is_element_case(const Case& read) { return read.text.contains("element"); }
 
-/// The curves of a verdict that have a name: of a scene the pressure under a footing over its
-/// settlement, of an element test its stresses and volume over the strain.
-std::vector<std::string> curve_catalogue(const Case& read) {
-  if (!is_element_case(read)) return {"pressure"};
-  return {"stress_xx", "stress_yy", "stress_zz", "stress_xy", "volumetric_strain"};
-}
-
 /// Whether a metric tells of every run, whatever it puts to the test.
 bool tells_of_any_run(const std::string& metric) {
   return contains({"completed", "steps", "non_finite_values", "bits_differ"}, metric);
 }
 
-std::string read_metric(const JsonPlace& place, const Case& read) {
+/// Every metric that a gate of the case may name.
+std::vector<std::string> metric_names(const Case& read) {
   std::vector<std::string> names = names_of(metric_catalogue());
   for (const Reading& reading : read.readings) names.push_back(metric_of(reading).name);
-  const std::string name = place.one_of(names);
-  if (name.starts_with(reading_prefix)) return name;
+  for (const std::string& name : comparison_metric_names(read.measurements)) names.push_back(name);
+  return names;
+}
+
+std::string read_metric(const JsonPlace& place, const Case& read) {
+  const std::string name = place.one_of(metric_names(read));
+  if (name.starts_with(reading_prefix) || name.starts_with(measured_prefix)) return name;
   const Metric& metric = *std::find_if(metric_catalogue().begin(), metric_catalogue().end(),
                                        [&](const Metric& m) { return m.name == name; });
   if (!metric.reference.empty() && !contains(read.references, metric.reference)) {
@@ -96,7 +96,7 @@ double read_within(const JsonPlace& place, const Case& read) {
 }
 
 std::string read_curve_name(const JsonPlace& place, const Case& read) {
-  return place.one_of(curve_catalogue(read));
+  return place.one_of(names_of(curve_kinds(read)));
 }
 
 Reading read_reading(const JsonPlace& place, const Case& read) {
@@ -126,17 +126,25 @@ void read_threshold(const JsonPlace& place, Gate& gate) {
   gate.threshold = (at_most.present() ? at_most : at_least).number();
 }
 
+bool is_of_pairs(Statistic statistic) {
+  return statistic == Statistic::bias || statistic == Statistic::scatter || statistic == Statistic::model_scatter;
+}
+
+bool is_power_law(Statistic statistic) {
+  return statistic == Statistic::power_exponent || statistic == Statistic::power_coefficient;
+}
+
 void read_across(const JsonPlace& place, const Case& read, Gate& gate) {
-  if (gate.statistic == Statistic::value) {
-    if (place.present()) place.refuse("no key \"across\" with the statistic \"value\"");
+  if (gate.statistic == Statistic::value || is_of_pairs(gate.statistic)) {
+    if (place.present()) place.refuse("no key \"across\" with a statistic that is not of a series");
     return;
   }
   const SweepAxis& axis = read_axis(place, read.sweep);
   const std::vector<Json> values = selected_values(axis, gate.where);
   const bool in_cell_size =
       gate.statistic == Statistic::last_order || gate.statistic == Statistic::discretisation_uncertainty;
-  // One pair gives an order but nothing to tell that it has settled.
-  const std::size_t fewest = in_cell_size ? 3 : 2;
+  // One pair gives an order, two points a power, but nothing to tell that it has settled.
+  const std::size_t fewest = in_cell_size || is_power_law(gate.statistic) ? 3 : 2;
   if (values.size() < fewest) {
     place.refuse("a parameter with at least " + std::to_string(fewest) + " selected values",
                  ", which has " + std::to_string(values.size()));
@@ -160,11 +168,22 @@ Statistic read_statistic(const JsonPlace& place) {
                                   {"least_ratio", Statistic::least_ratio},
                                   {"spread", Statistic::spread},
                                   {"curve_spread", Statistic::curve_spread},
+                                  {"power_exponent", Statistic::power_exponent},
+                                  {"power_coefficient", Statistic::power_coefficient},
+                                  {"bias", Statistic::bias},
+                                  {"scatter", Statistic::scatter},
+                                  {"model_scatter", Statistic::model_scatter},
                                   {"discretisation_uncertainty", Statistic::discretisation_uncertainty}});
 }
 
-/// What a gate looks at: a metric or, to compare whole curves, a curve and a stretch of it.
+/// What a gate looks at: pairs, a metric or, to compare whole curves, a curve and a stretch of it.
 void read_object(const JsonPlace& place, const Case& read, Gate& gate) {
+  if (is_of_pairs(gate.statistic)) {
+    if (read.pairs.empty()) place["pairs"].refuse("pairs of the case, which has none");
+    gate.pairs = place["pairs"].one_of(ids_of(read.pairs));
+    return;
+  }
+  if (is_power_law(gate.statistic)) gate.over = read_metric(place["over"], read);
   if (gate.statistic != Statistic::curve_spread) {
     gate.metric = read_metric(place["metric"], read);
     return;
@@ -179,12 +198,17 @@ void read_object(const JsonPlace& place, const Case& read, Gate& gate) {
 
 /// The keys a gate on a metric or on a curve may have.
 std::vector<std::string> gate_keys(Statistic statistic) {
-  std::vector<std::string> keys = {"id",       "statistic", "across", "where",    "at_most",
-                                   "at_least", "basis",     "reason", "must_fail"};
+  std::vector<std::string> keys = {"id", "statistic", "at_most", "at_least", "basis", "reason", "must_fail"};
+  if (is_of_pairs(statistic)) {
+    keys.insert(keys.begin() + 1, "pairs");
+    return keys;
+  }
+  keys.insert(keys.begin() + 2, {"across", "where"});
   if (statistic == Statistic::curve_spread)
     keys.insert(keys.begin() + 1, {"curve", "from", "up_to", "within"});
   else
     keys.insert(keys.begin() + 1, "metric");
+  if (is_power_law(statistic)) keys.insert(keys.begin() + 2, "over");
   return keys;
 }
 
@@ -211,12 +235,15 @@ std::vector<std::string> figure_keys(const std::string& kind) {
   if (kind == "model") return {"id", "kind", "caption", "panels", "where"};
   if (kind == "decomposition")
     return {"id", "kind", "caption", "panels", "where", "over", "metrics", "references"};
+  if (kind == "pairs") return {"id", "kind", "caption", "pairs"};
   std::vector<std::string> keys = {"id", "kind", "caption", "panels", "series", "where"};
+  if (kind == "comparison") keys.push_back("measurements");
+  if (kind == "trend") keys.insert(keys.end(), {"over", "abscissa", "metrics", "published"});
   if (kind == "profiles") keys.insert(keys.end(), {"quantity", "references"});
   if (kind == "convergence") keys.insert(keys.end(), {"over", "metrics"});
   if (kind == "bars") keys.push_back("metrics");
   if (kind == "curves") keys.insert(keys.end(), {"quantity", "references", "unavailable", "marks", "stages"});
-  if (kind == "fields") keys.insert(keys.end(), {"quantity", "snapshots", "unavailable", "view"});
+  if (kind == "fields") keys.insert(keys.end(), {"quantity", "snapshots", "unavailable", "view", "measurements"});
   if (kind == "history") keys.push_back("quantity");
   return keys;
 }
@@ -300,17 +327,37 @@ void read_layout(const JsonPlace& place, const Case& read, FigureRequest& figure
     used.push_back(parameter);
     return parameter;
   };
-  if (figure.kind == "convergence" || figure.kind == "decomposition") figure.over = read_role("over");
+  if (contains({"convergence", "decomposition", "trend"}, figure.kind)) figure.over = read_role("over");
   if (place["panels"].present()) figure.panels = read_role("panels");
   if (place["series"].present()) figure.series = read_role("series");
+}
+
+/// At least one of the names there are.
+std::vector<std::string> read_some_names(const JsonPlace& place, const std::vector<std::string>& allowed,
+                                         const char* expected) {
+  if (allowed.empty()) place.refuse(expected);
+  place.some_elements();
+  return read_names(place, allowed);
+}
+
+/// What the metrics are drawn over, and the published curves beside them.
+void read_trend(const JsonPlace& place, const Case& read, FigureRequest& figure) {
+  figure.abscissa = read_metric(place["abscissa"], read);
+  const JsonPlace published = place["published"];
+  if (!published.present()) return;
+  for (const JsonPlace& file : published.some_elements()) {
+    figure.published.push_back(read_curve_file_at(file, read));
+    if (!figure.published.back()->abscissa) file.refuse("a curve, with an abscissa", ", a table of single measurements");
+  }
 }
 
 FigureRequest read_figure(const JsonPlace& place, const Case& read) {
   FigureRequest figure;
   figure.kind = place["kind"].one_of(
-      is_element_case(read) ? std::vector<std::string>{"bars", "curves", "decomposition"}
+      is_element_case(read) ? std::vector<std::string>{"bars", "curves", "decomposition", "comparison"}
                             : std::vector<std::string>{"profiles", "convergence", "bars", "history", "curves",
-                                                       "fields", "model", "decomposition"});
+                                                       "fields", "model", "decomposition", "comparison",
+                                                       "pairs", "trend"});
   place.allow_only(figure_keys(figure.kind));
   figure.id = place["id"].own_identifier(ids_of(read.figures));
   figure.caption = place["caption"].text();
@@ -329,9 +376,16 @@ FigureRequest read_figure(const JsonPlace& place, const Case& read) {
     figure.view = read_view(place["view"]);
   } else if (figure.kind == "model") {
     require_two_dimensions(place["kind"], read);
-  } else {
+  } else if (figure.kind == "pairs") {
+    figure.pairs = read_some_names(place["pairs"], ids_of(read.pairs), "pairs of the case, which has none");
+  } else if (figure.kind != "comparison") {
     figure.metrics = read_metrics(place["metrics"], read);
   }
+  if (figure.kind == "comparison" || place["measurements"].present()) {
+    figure.measurements = read_some_names(place["measurements"], ids_of(read.measurements),
+                                          "measurements of the case, which has none");
+  }
+  if (figure.kind == "trend") read_trend(place, read, figure);
   if (place["references"].present()) figure.references = read_names(place["references"], read.references);
   figure.unavailable = optional_text(place["unavailable"]);
   figure.where = read_where(place["where"], read.sweep);
@@ -428,7 +482,8 @@ void read_parts(Case& read) {
       "claims",  "notes",   "quick", "study",           "repeat_on_other_threads",
       "scene",   "element", "sweep", "references",      "readings",
       "gates",   "figures"};
-  if (!place["element"].present()) keys.insert(keys.end(), {"metamorphoses", "probes", "snapshots"});
+  keys.insert(keys.end(), {"measurements", "pairs"});
+  if (!place["element"].present()) keys.insert(keys.end(), {"metamorphoses", "probes", "snapshots", "cuts"});
   place.allow_only(keys);
   optional_text(place["$schema"]);
   read_description(place, read);
@@ -441,9 +496,12 @@ void read_parts(Case& read) {
   read.probes = read_probes(place["probes"], read.runs);
   read.snapshots = read_snapshots(place["snapshots"], read.runs, read.probes);
   require_recorded(place["references"], read);
+  read.cuts = read_cuts(place["cuts"], read);
+  read.measurements = read_measurements(place["measurements"], read);
   if (const JsonPlace readings = place["readings"]; readings.present()) {
     for (const JsonPlace& reading : readings.elements()) read.readings.push_back(read_reading(reading, read));
   }
+  read.pairs = read_pairs(place["pairs"], read, metric_names(read));
   for (const JsonPlace& gate : place["gates"].some_elements()) read.gates.push_back(read_gate(gate, read));
   if (const JsonPlace claims = place["claims"]; claims.present()) {
     for (const JsonPlace& claim : claims.elements()) read.claims.push_back(read_claim(claim, read));

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <optional>
 
 #include "vv/campaign.hpp"
@@ -36,11 +35,6 @@ struct Arguments {
 };
 
 // ---- cases ----
-
-fs::path project_root() {
-  const char* root = std::getenv("MPMVV_ROOT");
-  return root && *root ? fs::path(root) : fs::path(build_facts().source_directory);
-}
 
 fs::path shipped_directory() { return project_root() / "vv" / "cases"; }
 

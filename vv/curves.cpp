@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace mpm::vv {
 namespace {
@@ -32,6 +33,28 @@ std::optional<double> inside(const Range& range, double abscissa) {
   const double inner = std::clamp(abscissa, range.begin, range.end);
   if (std::abs(inner - abscissa) <= rounding * range.length()) return inner;
   return std::nullopt;
+}
+
+/// A particle on the line of a cut.
+struct Met {
+  double place, value, half_size;
+};
+
+/// Those at one place as one.
+std::vector<Met> merged(std::vector<Met> met) {
+  std::stable_sort(met.begin(), met.end(), [](const Met& a, const Met& b) { return a.place < b.place; });
+  std::vector<Met> all;
+  for (std::size_t k = 0; k < met.size();) {
+    std::size_t end = k;
+    Met sum{0.0, 0.0, 0.0};
+    for (; end < met.size() && met[end].place - met[k].place <= rounding * met[k].half_size; ++end) {
+      sum.value += met[end].value;
+      sum.half_size = std::max(sum.half_size, met[end].half_size);
+    }
+    all.push_back({met[k].place, sum.value / static_cast<double>(end - k), sum.half_size});
+    k = end;
+  }
+  return all;
 }
 
 std::string unit_after(const Curve& curve) { return curve.x_name == "settlement" ? " m" : ""; }
@@ -149,6 +172,27 @@ ReadOff spread_over(const std::vector<const Curve*>& curves, const Range& range,
 Metric metric_of(const Reading& reading) {
   const bool ratio = !reading.over.empty() || reading.curve == "volumetric_strain";
   return {reading_prefix + reading.id, ratio ? "-" : "Pa", reading.over, reading.title};
+}
+
+std::optional<Curve> curve_along(const Cut& cut, const FieldMap& field) {
+  const bool along_x = cut.along == 0;
+  std::vector<Met> on_line;
+  for (std::size_t p = 0; p < field.value.size(); ++p) {
+    const double across = along_x ? field.y[p] : field.x[p], reach = along_x ? field.half_y[p] : field.half_x[p];
+    if (std::abs(across - cut.at) > reach * (1 + rounding)) continue;
+    on_line.push_back({along_x ? field.x[p] : field.y[p], field.value[p], along_x ? field.half_x[p] : field.half_y[p]});
+  }
+  const std::vector<Met> met = merged(std::move(on_line));
+  if (met.size() < 2) return std::nullopt;
+  Curve curve{.name = cut.id, .source = "run", .x_name = "position"};
+  for (std::size_t k = 0; k < met.size(); ++k) {
+    const Met &before = met[k == 0 ? 0 : k - 1], &after = met[std::min(k + 1, met.size() - 1)];
+    const double slope = (after.value - before.value) / (after.place - before.place);
+    curve.x.push_back(met[k].place);
+    curve.y.push_back(met[k].value);
+    curve.uncertainty.push_back(std::abs(slope) * met[k].half_size / std::numbers::sqrt3);
+  }
+  return curve;
 }
 
 const Curve* find_curve(const std::vector<Curve>& curves, const std::string& name,

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "vv/field_map.hpp"
 #include "vv/norms.hpp"
 #include "vv/verdict.hpp"
 
@@ -36,6 +37,12 @@ ReadOff value_at(const Curve& curve, double abscissa, double within);
 /// What a reading says of a run with these curves. Over a reference solution its curve is taken at the very
 /// abscissae at which the run's is.
 ReadOff read_off(const Reading& reading, const std::vector<Curve>& curves);
+
+/// The curve of a cut through a field: the particles whose own size reaches the line, in the order of their centers
+/// along it; those at one place count with their mean. Its uncertainty is that of the place, half a particle's size
+/// either way with a rectangular distribution, times the slope through the neighbours. Nothing if the line meets
+/// less than two particles.
+std::optional<Curve> curve_along(const Cut& cut, const FieldMap& field);
 
 /// The stretch of abscissae over which curves are compared; open ends are those of the curves.
 struct Stretch {

@@ -3,8 +3,11 @@
 #include <sys/utsname.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <fstream>
 #include <thread>
+
+#include "vv/revision.hpp"
 
 namespace mpm::vv {
 
@@ -19,5 +22,10 @@ std::string processor_name() {
 }
 
 int core_count() { return static_cast<int>(std::max(1u, std::thread::hardware_concurrency())); }
+
+std::filesystem::path project_root() {
+  const char* root = std::getenv("MPMVV_ROOT");
+  return root && *root ? std::filesystem::path(root) : std::filesystem::path(build_facts().source_directory);
+}
 
 }  // namespace mpm::vv

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 
 namespace mpm::vv {
@@ -9,5 +10,9 @@ std::string processor_name();
 
 /// Logical cores, at least 1.
 int core_count();
+
+/// The project that the shipped cases and curves belong to: MPMVV_ROOT of the environment, else where the program was
+/// built from.
+std::filesystem::path project_root();
 
 }  // namespace mpm::vv

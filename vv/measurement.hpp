@@ -1,6 +1,6 @@
 #pragma once
 
-#include <functional>
+#include <cstddef>
 #include <string>
 #include <utility>
 #include <vector>
@@ -116,9 +116,11 @@ struct ModelFactor {
   double least = 0.0, greatest = 0.0;  ///< of predicted / measured
 };
 
-/// The model factor of at least two pairs of positive numbers. `u_measured` is the relative standard
-/// uncertainty of one measurement [-]. Throws std::invalid_argument for fewer pairs or numbers that are not
-/// positive.
+/// Fewer pairs have a bias, but next to nothing to tell how certain it is.
+inline constexpr std::size_t fewest_pairs = 3;
+
+/// The model factor of at least `fewest_pairs` pairs. `u_measured` is the relative standard uncertainty of
+/// one measurement [-]. Throws std::invalid_argument for fewer pairs or numbers that are not positive.
 ModelFactor model_factor(const std::vector<Pair>& pairs, double u_measured);
 
 }  // namespace mpm::vv

@@ -14,11 +14,11 @@ namespace mpm::vv {
 
 /// One curve exactly as it was judged or as the exact solution gives it; SI units.
 struct Curve {
-  std::string name;       ///< stress, displacement, stress_error, pressure, or a probe's id
+  std::string name;       ///< stress, displacement, stress_error, pressure, free_surface, failure_line, a cut's or a probe's id
   std::string source;     ///< "run", or the reference solution's name
   std::vector<double> x;  ///< initial height X [m], current height x [m], settlement [m] or time [s]: see `x_name`
   std::vector<double> y;
-  std::string x_name;  ///< position, initial_position, settlement or time
+  std::string x_name;  ///< position, initial_position, settlement, strain or time
   /// Standard uncertainty of each ordinate by the way it was read off the particles; empty if there is none.
   std::vector<double> uncertainty = {};
 };
