@@ -30,6 +30,87 @@ double terzaghi_log_nq(double friction_angle) {
   return (1.5 * pi - friction_angle) * std::tan(friction_angle) - std::log1p(-std::sin(friction_angle));
 }
 
+/// Pp over gamma B^2 for the spiral whose centre is `back` widths B behind the footing's edge, up along the
+/// slip line of Rankine's wedge. Lengths in B, levers from the centre, angles downwards from the horizontal.
+double passive_force(double friction_angle, double back) {
+  const double tangent = std::tan(friction_angle), rankine = pi / 4 - friction_angle / 2;
+  const double cosine = std::cos(rankine), sine = std::sin(rankine);
+  const double tip_x = back * cosine - 0.5, tip_y = back * sine + tangent / 2;
+  const double first = std::hypot(tip_x, tip_y), first_angle = std::atan2(tip_y, tip_x);
+  const double last = first * std::exp((first_angle - rankine) * tangent);
+
+  // The soil between the spiral, the face and the surface: a sector, less the triangle above the face, and
+  // the near half of Rankine's wedge.
+  const auto primitive = [&](double radius, double angle) {
+    return std::pow(radius, 3) * (std::sin(angle) - 3 * tangent * std::cos(angle));
+  };
+  const double sector =
+      (primitive(first, first_angle) - primitive(last, rankine)) / (3 * (1 + 9 * tangent * tangent));
+  const double triangle = back * first * std::sin(first_angle - rankine) / 2 * (back * cosine + tip_x) / 3;
+  const double side = last - back, height = side * sine;
+  const double wedge = height * side * cosine / 2 * (back + side * 2 / 3) * cosine;
+  const double rankine_force = height * height / (2 * std::pow(std::tan(rankine), 2));
+  const double resisting = sector - triangle + wedge + rankine_force * (back * sine + height * 2 / 3);
+  return resisting / (1.0 / 3 - back * cosine);
+}
+
+/// The position of the least value of `function`, which falls and then rises between `low` and `high`.
+template <class Function>
+double position_of_minimum(const Function& function, double low, double high) {
+  constexpr double golden = std::numbers::phi - 1;
+  for (int step = 0; step < 60; ++step) {  // to 1e-12 of the interval
+    const double left = high - golden * (high - low), right = low + golden * (high - low);
+    if (function(left) < function(right))
+      high = right;
+    else
+      low = left;
+  }
+  return (low + high) / 2;
+}
+
+void require_embedded_footing(const EmbeddedFooting& footing, double least_angle) {
+  constexpr double rounding = 1e-9 * degree;  // so that the ends of the range are inside
+  const bool has_angle =
+      footing.friction_angle > least_angle - rounding && footing.friction_angle < 45 * degree + rounding;
+  if (!(footing.width > 0 && footing.depth >= 0 && footing.unit_weight >= 0 && has_angle))
+    throw std::invalid_argument("a footing is outside the range of the formula for its capacity");
+}
+
+double capacity(const EmbeddedFooting& footing, double nq, double ngamma) {
+  return superposed_capacity({footing.width, 0, footing.unit_weight * footing.depth, footing.unit_weight},
+                             {0, nq, ngamma});
+}
+
+double exact_capacity(const EmbeddedFooting& footing) {
+  require_embedded_footing(footing, degree);
+  return capacity(footing, exact_nq(footing.friction_angle),
+                  exact_ngamma(footing.friction_angle, Roughness::rough));
+}
+
+double terzaghi_capacity(const EmbeddedFooting& footing) {
+  require_embedded_footing(footing, degree);
+  return capacity(footing, terzaghi_nq(footing.friction_angle), terzaghi_ngamma(footing.friction_angle));
+}
+
+double meyerhof_capacity(const EmbeddedFooting& footing) {
+  require_embedded_footing(footing, degree);
+  return capacity(footing, exact_nq(footing.friction_angle), meyerhof_ngamma(footing.friction_angle));
+}
+
+double meyerhof_capacity_with_depth(const EmbeddedFooting& footing) {
+  require_embedded_footing(footing, 10 * degree);
+  const double depth_factor =
+      1 + 0.1 * std::tan(pi / 4 + footing.friction_angle / 2) * footing.depth / footing.width;
+  return meyerhof_capacity(footing) * depth_factor;
+}
+
+constexpr CapacityFormula formulas[] = {
+    {"exact", "exact factors added up", exact_capacity},
+    {"terzaghi", "Terzaghi (1943)", terzaghi_capacity},
+    {"meyerhof", "Meyerhof (1963)", meyerhof_capacity},
+    {"meyerhof_with_depth", "Meyerhof (1963) with depth factors", meyerhof_capacity_with_depth},
+};
+
 }  // namespace
 
 double exact_nq(double friction_angle) {
@@ -63,6 +144,17 @@ std::optional<double> terzaghi_ngamma_chart(double friction_angle) {
   return std::nullopt;
 }
 
+double terzaghi_ngamma(double friction_angle) {
+  constexpr double rounding = 1e-9 * degree;  // so that 1 and 50 degrees themselves are inside
+  if (!(friction_angle > degree - rounding && friction_angle < 50 * degree + rounding))
+    throw std::invalid_argument("Terzaghi's factor of weight needs a friction angle from 1 to 50 degrees");
+  const auto force = [&](double back) { return passive_force(friction_angle, back); };
+  // Beyond a third of a width, measured along the surface, the force would turn the soil with its weight.
+  const double furthest = 1 / (3 * std::cos(pi / 4 - friction_angle / 2));
+  const double least = force(position_of_minimum(force, 0, furthest));
+  return 4 * least - std::tan(friction_angle) / 2;
+}
+
 double meyerhof_ngamma(double friction_angle) {
   require_friction_angle(friction_angle, pi / 2.8);
   return std::expm1(exact_log_nq(friction_angle)) * std::tan(1.4 * friction_angle);
@@ -76,6 +168,8 @@ double superposed_capacity(const StripFooting& footing, const BearingCapacityFac
   return footing.cohesion * factors.cohesion + footing.surcharge * factors.surcharge +
          footing.unit_weight * footing.width * factors.self_weight / 2;
 }
+
+std::span<const CapacityFormula> capacity_formulas() { return formulas; }
 
 SlipLineField::SlipLineField(double friction_angle, Roughness roughness, int steps)
     : sine_(std::sin(friction_angle)),

@@ -8,8 +8,10 @@
 #include <numbers>
 #include <random>
 #include <stdexcept>
+#include <string>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 namespace {
 
@@ -72,25 +74,78 @@ TEST(VerificationOfBearingCapacity, LimitsWithoutFriction) {
   }
 }
 
+// Computed from the same mechanism [Kumbhojkar93], as textbooks quote it, all digits as printed.
+TEST(VerificationOfBearingCapacity, TerzaghisSelfWeightFactorAgreesWithItsTable) {
+  constexpr std::pair<double, double> table[] = {{10, 0.56},   {20, 3.64},   {25, 8.34},   {30, 19.13},
+                                                 {34, 38.04},  {35, 45.41},  {37, 65.27},  {40, 115.31},
+                                                 {44, 261.60}, {45, 325.34}, {50, 1072.80}};
+  constexpr double last_digit = 0.51e-2;
+  for (const auto& [degrees, factor] : table)
+    EXPECT_NEAR(terzaghi_ngamma(degrees * degree), factor, last_digit) << degrees;
+  // The chart, drawn from a few trials by hand.
+  EXPECT_NEAR(*terzaghi_ngamma_chart(30 * degree) / terzaghi_ngamma(30 * degree), 1, 0.03);
+}
+
+/// The least passive force of terzaghi_ngamma over gamma B^2, once more: the soil is a polygon of many
+/// corners, the centre is tried in many places.
+double trial_passive_force(double friction_angle) {
+  const double rankine = pi / 4 - friction_angle / 2, tip_y = -std::tan(friction_angle) / 2;
+  const auto force = [&](double back) {
+    const double centre_x = -back * std::cos(rankine), centre_y = back * std::sin(rankine);
+    const double first = std::atan2(tip_y - centre_y, -0.5 - centre_x), last = -rankine;
+    std::vector<std::pair<double, double>> corners{{0, 0}};
+    for (int i = 0; i <= 2000; ++i) {
+      const double turned = i / 2000.0 * (last - first);
+      const double radius =
+          std::hypot(-0.5 - centre_x, tip_y - centre_y) * std::exp(turned * std::tan(friction_angle));
+      corners.emplace_back(centre_x + radius * std::cos(first + turned),
+                           centre_y + radius * std::sin(first + turned));
+    }
+    const auto [end_x, end_y] = corners.back();
+    corners.emplace_back(end_x, 0);
+    double moment =
+        end_y * end_y / 2 * std::pow(std::tan(pi / 4 + friction_angle / 2), 2) * (centre_y - 2 * end_y / 3);
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      const auto [x, y] = corners[i];
+      const auto [next_x, next_y] = corners[(i + 1) % corners.size()];
+      moment += (x * next_y - next_x * y) / 2 * ((x + next_x) / 3 - centre_x);
+    }
+    return moment / (centre_x + 1.0 / 3);
+  };
+  double least = force(0);
+  for (double back = 0; back < 0.32; back += 0.001) least = std::min(least, force(back));
+  return least;
+}
+
+TEST(VerificationOfBearingCapacity, TerzaghisSelfWeightFactorIsTheLeastOfManyTrials) {
+  for (double degrees : {5.0, 18.0, 34.0, 42.5}) {
+    const double angle = degrees * degree;
+    const double factor = 4 * trial_passive_force(angle) - std::tan(angle) / 2;
+    EXPECT_NEAR(terzaghi_ngamma(angle) / factor, 1, 1e-4) << degrees;
+  }
+}
+
 TEST(VerificationOfBearingCapacity, FactorsGrowWithFriction) {
-  double before[7] = {};
+  double before[8] = {};
   for (double degrees = 2; degrees <= 50; degrees += 4) {
     const double angle = degrees * degree;
     const double smooth = SlipLineField(angle, Roughness::smooth).bearing_capacity_factor();
     const double rough = SlipLineField(angle, Roughness::rough).bearing_capacity_factor();
-    const double now[7] = {exact_nq(angle),
+    const double now[8] = {exact_nq(angle),
                            exact_nc(angle),
                            terzaghi_nq(angle),
                            terzaghi_nc(angle),
                            meyerhof_ngamma(angle),
+                           terzaghi_ngamma(angle),
                            smooth,
                            rough};
-    for (int i = 0; i < 7; ++i) {
+    for (int i = 0; i < 8; ++i) {
       EXPECT_GT(now[i], before[i]) << "factor " << i << " at " << degrees << " degrees";
       before[i] = now[i];
     }
     EXPECT_LT(smooth, rough);
     EXPECT_LT(rough, 2 * smooth);
+    EXPECT_LT(rough, terzaghi_ngamma(angle));
     EXPECT_LT(now[0], now[2]) << "Terzaghi's rough wedge resists more than the exact mechanism";
   }
 }
@@ -326,7 +381,48 @@ TEST(BearingCapacity, AddsItsThreeTerms) {
   EXPECT_EQ(superposed_capacity({2, 10, 10, 10}, factors), 630);
 }
 
+/// The formula of a name, for a footing 0.1 m wide on sand of 16 kN/m^3.
+double formula_pressure(const std::string& name, double depth, double degrees) {
+  for (const CapacityFormula& formula : capacity_formulas())
+    if (formula.name == name) return formula.pressure({0.1, depth, 16e3, degrees * degree});
+  throw std::out_of_range(name);
+}
+
+TEST(VerificationOfBearingCapacity, FormulasAreTheFactorsOfTheirNames) {
+  // On the surface 1/2 gamma B Ngamma is 800 Pa times the factor; at half a width below it, gamma D Nq adds
+  // 800 Pa times the other. Factors at 30 degrees: the tables above, Meyerhof's Ngamma as printed, 15.67.
+  const double weight[] = {14.75426, 19.13, 15.67}, surcharge[] = {18.4011, 22.4557, 18.4011};
+  const char* const names[] = {"exact", "terzaghi", "meyerhof"};
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_NEAR(formula_pressure(names[i], 0, 30) / 800, weight[i], 0.005) << names[i];
+    EXPECT_NEAR(formula_pressure(names[i], 0.05, 30) / 800, weight[i] + surcharge[i], 0.005) << names[i];
+  }
+  // sqrt Kp = tan 60 deg.
+  EXPECT_DOUBLE_EQ(formula_pressure("meyerhof_with_depth", 0, 30), formula_pressure("meyerhof", 0, 30));
+  EXPECT_NEAR(formula_pressure("meyerhof_with_depth", 0.05, 30),
+              (1 + 0.05 * std::sqrt(3.0)) * formula_pressure("meyerhof", 0.05, 30), 1e-9);
+  EXPECT_EQ(capacity_formulas().size(), 4u);
+}
+
+TEST(VerificationOfBearingCapacity, FormulasScaleWithTheWidth) {
+  // No stress but weight times length: twice the size, twice the pressure, of every formula.
+  for (const CapacityFormula& formula : capacity_formulas())
+    EXPECT_NEAR(formula.pressure({0.2, 0.1, 16e3, 0.7}) / formula.pressure({0.1, 0.05, 16e3, 0.7}), 2, 1e-12)
+        << formula.name;
+}
+
 TEST(BearingCapacity, RefusesAnglesOutsideTheRange) {
+  for (const CapacityFormula& formula : capacity_formulas()) {
+    for (double degrees : {0.9, 45.1, nan})
+      EXPECT_THROW(formula.pressure({0.1, 0.05, 16e3, degrees * degree}), std::invalid_argument);
+    EXPECT_THROW(formula.pressure({0, 0.05, 16e3, 0.7}), std::invalid_argument);
+    EXPECT_THROW(formula.pressure({0.1, -0.05, 16e3, 0.7}), std::invalid_argument);
+    EXPECT_THROW(formula.pressure({0.1, 0.05, nan, 0.7}), std::invalid_argument);
+  }
+  EXPECT_NO_THROW(formula_pressure("meyerhof_with_depth", 0.05, 10));
+  EXPECT_THROW(formula_pressure("meyerhof_with_depth", 0.05, 9.9), std::invalid_argument);
+  for (double degrees : {-1.0, 0.9, 50.1, nan})
+    EXPECT_THROW(terzaghi_ngamma(degrees * degree), std::invalid_argument);
   for (double angle : {-0.1, pi / 2, 3.0, nan}) {
     EXPECT_THROW(exact_nq(angle), std::invalid_argument);
     EXPECT_THROW(exact_nc(angle), std::invalid_argument);
