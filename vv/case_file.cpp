@@ -528,6 +528,19 @@ std::string one_line(std::string text) {
 
 }  // namespace
 
+std::vector<std::shared_ptr<const CurveFile>> curve_files_of(const Case& definition) {
+  std::vector<std::shared_ptr<const CurveFile>> all;
+  const auto add = [&](const std::shared_ptr<const CurveFile>& file) {
+    const auto same = [&](const auto& known) { return known->file == file->file; };
+    if (std::none_of(all.begin(), all.end(), same)) all.push_back(file);
+  };
+  for (const Measurement& measurement : definition.measurements) add(measurement.file);
+  for (const PairedPrediction& pairs : definition.pairs) add(pairs.file);
+  for (const FigureRequest& figure : definition.figures)
+    for (const auto& file : figure.published) add(file);
+  return all;
+}
+
 Case parse_case(const std::string& text, const std::filesystem::path& file) {
   try {
     Case read;

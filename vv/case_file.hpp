@@ -251,6 +251,9 @@ struct Case {
   Json text;
 };
 
+/// Every curve file a case compares with or draws, each once, in the order of the case.
+std::vector<std::shared_ptr<const CurveFile>> curve_files_of(const Case& definition);
+
 /// Reads, validates (against vv/case.schema.json too) and expands a case file. Throws CaseError for the first
 /// thing wrong with the file, with any scene it sweeps over, or with a gate, probe or figure it asks for.
 ///

@@ -27,7 +27,7 @@ void complain(std::string text) {
 }
 
 struct Arguments {
-  std::vector<std::string> cases;
+  std::vector<std::string> cases, curves;
   std::string out;
   int threads = core_count();
   bool quick = false;
@@ -86,7 +86,8 @@ std::string metric_of(const GateResult& gate) {
 std::string text_of(double value) { return std::isfinite(value) ? fmt::format("{:.4g}", value) : "-"; }
 
 Row row_of(const GateResult& gate, const std::string& scope) {
-  return {.status = !gate.good()     ? "FAIL"
+  return {.status = gate.waits()     ? "WAITS"
+                    : !gate.good()   ? "FAIL"
                     : gate.must_fail ? "CONTROL"
                                      : "PASS",
           .id = gate.id,
@@ -94,7 +95,7 @@ Row row_of(const GateResult& gate, const std::string& scope) {
           .metric = metric_of(gate),
           .value = text_of(gate.value),
           .threshold = fmt::format("{} {:.4g}", gate.op, gate.threshold),
-          .detail = gate.good() && !gate.must_fail ? "" : gate.detail};
+          .detail = gate.good() && !gate.must_fail && !gate.waits() ? "" : gate.detail};
 }
 
 /// Smaller is closer to the threshold, on either side of it.
@@ -108,7 +109,7 @@ std::vector<Row> rows_of(const std::vector<const GateResult*>& results) {
   std::vector<Row> rows;
   std::vector<const GateResult*> good;
   for (const GateResult* result : results) {
-    if (result->good()) {
+    if (result->good() && !result->waits()) {
       good.push_back(result);
     } else {
       rows.push_back(row_of(*result, result->scope));
@@ -181,7 +182,8 @@ void print_counts(const CampaignVerdict& verdict, const fs::path& out) {
   const Counts counts = verdict.counts();
   fmt::print("\ncases     {}: {} pass, {} fail, {} not run\n", counts.cases, counts.cases_passed,
              counts.cases_failed, counts.cases_not_run);
-  fmt::print("gates     {}: {} pass, {} fail\n", counts.gates, counts.gates_passed, counts.gates_failed);
+  fmt::print("gates     {}: {} pass, {} fail{}\n", counts.gates, counts.gates_passed, counts.gates_failed,
+             counts.gates_waiting ? fmt::format(", {} wait for a measurement", counts.gates_waiting) : "");
   fmt::print("controls  {}: {} red as expected, {} not\n", counts.controls, counts.controls_red,
              counts.controls_green);
   fmt::print("runs      {} in {:.1f} s on {} thread{}, {} stored record{} reused\n", counts.runs,
@@ -244,6 +246,33 @@ int list() {
   return good ? all_good : bad_input;
 }
 
+/// One line a curve file: what it is, or what is wrong with it.
+bool show_curve(const fs::path& file) {
+  try {
+    const CurveFile curve = read_curve_file(file);
+    const std::string content =
+        curve.missing ? "missing" : fmt::format("{} rows, {}", curve.rows.size(), curve.origin);
+    fmt::print("{:<32}  {:<20}  {}, {}: {}\n", curve.id, content, curve.citation, curve.place, curve.title);
+    return true;
+  } catch (const std::exception& error) {
+    complain(error.what());
+    return false;
+  }
+}
+
+int curves(const Arguments& arguments) {
+  std::vector<fs::path> files(arguments.curves.begin(), arguments.curves.end());
+  if (files.empty()) {
+    for (const auto& entry : fs::directory_iterator(shipped_curves()))
+      if (entry.path().extension() == ".json") files.push_back(entry.path());
+    std::sort(files.begin(), files.end());
+  }
+  bool good = true;
+  for (const fs::path& file : files) good = show_curve(file) && good;
+  std::fflush(stdout);
+  return good ? all_good : bad_input;
+}
+
 int run(const Arguments& arguments, const ReportWriter& reports) {
   const auto cases = read_all(arguments.cases, file_of);
   if (!cases) return bad_input;
@@ -285,6 +314,8 @@ struct CommandLine {
       "mpmvv"};
   Arguments arguments;
   CLI::App* list = app.add_subcommand("list", "Show the shipped cases, one line each");
+  CLI::App* curves = app.add_subcommand(
+      "curves", "Check files of measured curves and show them, one line each; without any, those shipped");
   CLI::App* run = app.add_subcommand("run", "Run cases and judge them");
   CLI::App* report = app.add_subcommand("report", "Run and judge every shipped case and write the report");
   CLI::App* check_performance =
@@ -299,6 +330,7 @@ struct CommandLine {
     app.set_version_flag("--version",
                          fmt::format("mpmvv {} ({}, {})", facts.version, facts.revision, facts.compiler));
     app.require_subcommand(1);
+    curves->add_option("file", arguments.curves, "Curve files");
     run->add_option("case", arguments.cases, "Case files, or ids of shipped cases")->required();
     run->add_option("--out", arguments.out, "Directory for records, results and report (default: mpmvv-out)");
     report->add_option("--out", arguments.out, "The same (default: reports/out of the project)");
@@ -321,6 +353,7 @@ struct CommandLine {
 
   int dispatch(const ReportWriter& reports) const {
     if (list->parsed()) return vv::list();
+    if (curves->parsed()) return vv::curves(arguments);
     if (run->parsed()) return vv::run(arguments, reports);
     if (report->parsed()) return vv::report(arguments, reports);
     if (check_performance->parsed()) return vv::check_performance(arguments, reports);

@@ -184,7 +184,10 @@ std::optional<Curve> curve_along(const Cut& cut, const FieldMap& field) {
   }
   const std::vector<Met> met = merged(std::move(on_line));
   if (met.size() < 2) return std::nullopt;
-  Curve curve{.name = cut.id, .source = "run", .x_name = "position"};
+  Curve curve;
+  curve.name = cut.id;
+  curve.source = "run";
+  curve.x_name = "position";
   for (std::size_t k = 0; k < met.size(); ++k) {
     const Met &before = met[k == 0 ? 0 : k - 1], &after = met[std::min(k + 1, met.size() - 1)];
     const double slope = (after.value - before.value) / (after.place - before.place);

@@ -10,82 +10,34 @@
 #include <stdexcept>
 
 #include "vv/curves.hpp"
+#include "vv/field_map.hpp"
 #include "vv/grid_convergence.hpp"
+#include "vv/measurement_reader.hpp"
+#include "vv/run_groups.hpp"
+#include "vv/validation.hpp"
 
 namespace mpm::vv {
 namespace {
-
-using Parameters = std::vector<std::pair<std::string, Json>>;
 
 constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
 constexpr const char* completion_metric = "completed";
 
 /// The value a gate compares or, when it is NaN, why there is none.
-struct Measurement {
+struct Measured {
   double value = not_measured;
   std::string detail;
   bool ended_early = false;  ///< there is none because the solver ended the run early and said how
+  bool waits = false;        ///< there is none because the measurement it compares with is missing
 };
-
-/// Runs of one series, from coarse to fine, and the parameters they share.
-struct Group {
-  Parameters fixed;
-  std::vector<std::size_t> runs;
-};
-
-// ---- selecting ----
-
-const Json* value_of(const Parameters& parameters, const std::string& pointer) {
-  for (const auto& [name, value] : parameters) {
-    if (name == pointer) return &value;
-  }
-  return nullptr;
-}
-
-bool selects(const std::vector<Selector>& where, const Parameters& parameters) {
-  return std::all_of(where.begin(), where.end(), [&](const Selector& selector) {
-    const Json* value = value_of(parameters, selector.parameter);
-    return value &&
-           std::find(selector.values.begin(), selector.values.end(), *value) != selector.values.end();
-  });
-}
-
-std::vector<std::size_t> selected_runs(const Case& definition, const std::vector<Selector>& where) {
-  std::vector<std::size_t> selected;
-  for (std::size_t run = 0; run < definition.runs.size(); ++run) {
-    if (selects(where, definition.runs[run].parameters)) selected.push_back(run);
-  }
-  return selected;
-}
-
-Parameters without(const Parameters& parameters, const std::string& pointer) {
-  Parameters rest;
-  for (const auto& entry : parameters) {
-    if (entry.first != pointer) rest.push_back(entry);
-  }
-  return rest;
-}
-
-/// Groups runs that differ in one parameter only, in sweep order; runs in which it is not swept are left out.
-std::vector<Group> groups_across(const Case& definition, const std::vector<std::size_t>& runs,
-                                 const std::string& across) {
-  std::vector<Group> groups;
-  for (std::size_t run : runs) {
-    const Parameters& parameters = definition.runs[run].parameters;
-    if (!value_of(parameters, across)) continue;
-    const Parameters fixed = without(parameters, across);
-    auto group = std::find_if(groups.begin(), groups.end(), [&](const Group& g) { return g.fixed == fixed; });
-    if (group == groups.end()) group = groups.insert(groups.end(), Group{fixed, {}});
-    group->runs.push_back(run);
-  }
-  const auto coarser = [&](std::size_t a, std::size_t b) {
-    return definition.runs[a].scene.cell_size > definition.runs[b].scene.cell_size;
-  };
-  for (Group& group : groups) std::stable_sort(group.runs.begin(), group.runs.end(), coarser);
-  return groups;
-}
 
 // ---- measuring ----
+
+/// Why the run was not compared with the measurement that a metric belongs to; empty if it was.
+std::string lack_of_comparison(const RunVerdict& run, const std::string& metric) {
+  for (const CurveComparison& comparison : run.comparisons)
+    if (metric.starts_with(measured_prefix + comparison.measurement + ".")) return comparison.lack;
+  return "";
+}
 
 /// Why a run that completed does not have a metric that is absent.
 std::string why_absent(const Case& definition, const RunVerdict& run, const std::string& metric) {
@@ -94,10 +46,20 @@ std::string why_absent(const Case& definition, const RunVerdict& run, const std:
     const std::string lack = read_off(reading, run.curves).lack;
     if (!lack.empty()) return "the run completed but " + lack;
   }
+  const std::string lack = lack_of_comparison(run, metric);
+  if (!lack.empty()) return "the run completed but " + lack;
   return fmt::format("the run completed but {} was not measured", metric);
 }
 
-Measurement measure(const Case& definition, const RunVerdict& run, const std::string& metric) {
+/// Whether the number needs a measurement that is an empty slot.
+bool needs_what_is_missing(const Case& definition, const std::string& metric) {
+  const Measurement* measurement = measurement_of(metric, definition.measurements);
+  return measurement && measurement->file->missing;
+}
+
+Measured measure(const Case& definition, const RunVerdict& run, const std::string& metric) {
+  if (needs_what_is_missing(definition, metric))
+    return {.value = not_measured, .detail = lack_of_comparison(run, metric), .waits = true};
   const auto found = run.metrics.find(metric);
   if (found != run.metrics.end() && std::isfinite(found->second))
     return {.value = found->second, .detail = {}};
@@ -166,23 +128,23 @@ double statistic_of(Statistic statistic, const std::vector<double>& values,
 }
 
 /// Adds to what a series lacks: the first run is told of, and ending early excuses all runs or none.
-void add_lack(Measurement& lacking, const RunVerdict& run, const std::string& detail, bool ended_early) {
+void add_lack(Measured& lacking, const RunVerdict& run, const std::string& detail, bool ended_early) {
   const bool first = lacking.detail.empty();
   if (first) lacking.detail = scope_of(run.parameters) + ": " + detail;
   lacking.ended_early = ended_early && (first || lacking.ended_early);
 }
 
 /// The same where the run's curve is to blame.
-void add_lack_of_curve(Measurement& lacking, const RunVerdict& run, const std::string& lack) {
+void add_lack_of_curve(Measured& lacking, const RunVerdict& run, const std::string& lack) {
   const bool completed = run.record.completed();
   add_lack(lacking, run, completed ? lack : ending_of(run.record) + ", " + lack,
            !completed && run.record.failure.empty());
 }
 
 /// How far apart the curves of a series are.
-Measurement measure_curves(const Gate& gate, const std::vector<const RunVerdict*>& levels) {
+Measured measure_curves(const Gate& gate, const std::vector<const RunVerdict*>& levels) {
   std::vector<const Curve*> curves;
-  Measurement lacking;
+  Measured lacking;
   for (const RunVerdict* level : levels) {
     curves.push_back(find_curve(level->curves, gate.curve, "run"));
     if (!curves.back()) add_lack_of_curve(lacking, *level, "the run has no curve " + gate.curve);
@@ -195,7 +157,7 @@ Measurement measure_curves(const Gate& gate, const std::vector<const RunVerdict*
 }
 
 /// How certain the finest value of a series is; the detail says how that was found.
-Measurement measure_uncertainty(const std::vector<double>& values, const std::vector<double>& cell_size) {
+Measured measure_uncertainty(const std::vector<double>& values, const std::vector<double>& cell_size) {
   const std::optional<GridConvergence> convergence = grid_convergence(cell_size, values);
   if (convergence) return {.value = convergence->uncertainty, .detail = convergence->method};
   return {.value = not_measured,
@@ -204,8 +166,47 @@ Measurement measure_uncertainty(const std::vector<double>& values, const std::ve
               "not 0"};
 }
 
+bool is_power_law(Statistic statistic) {
+  return statistic == Statistic::power_exponent || statistic == Statistic::power_coefficient;
+}
+
+/// n and c of y = c x^n, by least squares in the logarithms; nothing unless all numbers are above zero and the
+/// abscissae differ.
+std::optional<std::pair<double, double>> power_law(const std::vector<double>& x, const std::vector<double>& y) {
+  double sx = 0, sy = 0, sxx = 0, sxy = 0;
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    if (!(x[k] > 0.0) || !(y[k] > 0.0)) return std::nullopt;
+    const double lx = std::log(x[k]), ly = std::log(y[k]);
+    sx += lx;
+    sy += ly;
+    sxx += lx * lx;
+    sxy += lx * ly;
+  }
+  const auto count = static_cast<double>(x.size());
+  const double exponent = (count * sxy - sx * sy) / (count * sxx - sx * sx);
+  const double coefficient = std::exp((sy - exponent * sx) / count);
+  if (!std::isfinite(exponent) || !std::isfinite(coefficient)) return std::nullopt;
+  return std::pair(exponent, coefficient);
+}
+
+/// The law of a metric whose `values` are all there over another metric of the same runs.
+Measured measure_power_law(const Case& definition, const Gate& gate, const std::vector<const RunVerdict*>& levels,
+                           const std::vector<double>& values) {
+  std::vector<double> abscissae;
+  for (const RunVerdict* level : levels) {
+    const Measured abscissa = measure(definition, *level, gate.over);
+    if (!std::isfinite(abscissa.value)) return abscissa;
+    abscissae.push_back(abscissa.value);
+  }
+  const std::optional<std::pair<double, double>> law = power_law(abscissae, values);
+  if (!law)
+    return {.value = not_measured,
+            .detail = "a power law goes through positive numbers at different abscissae only"};
+  return {.value = gate.statistic == Statistic::power_exponent ? law->first : law->second, .detail = {}};
+}
+
 /// A statistic of a series; without a value it tells of the first run that lacks one.
-Measurement measure(const Case& definition, const Gate& gate, const std::vector<const RunVerdict*>& levels,
+Measured measure(const Case& definition, const Gate& gate, const std::vector<const RunVerdict*>& levels,
                     const std::vector<double>& cell_size) {
   if (levels.size() < 2) {
     return {.value = not_measured,
@@ -213,18 +214,30 @@ Measurement measure(const Case& definition, const Gate& gate, const std::vector<
   }
   if (gate.statistic == Statistic::curve_spread) return measure_curves(gate, levels);
   std::vector<double> values;
-  Measurement lacking;
+  Measured lacking;
   for (const RunVerdict* level : levels) {
-    const Measurement measurement = measure(definition, *level, gate.metric);
+    const Measured measurement = measure(definition, *level, gate.metric);
     values.push_back(measurement.value);
     if (!std::isfinite(measurement.value))
       add_lack(lacking, *level, measurement.detail, measurement.ended_early);
   }
+  lacking.waits = needs_what_is_missing(definition, gate.metric);
   if (!lacking.detail.empty()) return lacking;
+  if (is_power_law(gate.statistic)) return measure_power_law(definition, gate, levels, values);
   if (gate.statistic == Statistic::discretisation_uncertainty) return measure_uncertainty(values, cell_size);
   const double value = statistic_of(gate.statistic, values, cell_size);
   if (std::isfinite(value)) return {.value = value, .detail = {}};
   return {.value = not_measured, .detail = "the statistic of these values is not a finite number"};
+}
+
+Measured measure_pairs(Statistic statistic, const PairsVerdict& pairs) {
+  if (!pairs.lack.empty()) return {.value = not_measured, .detail = pairs.lack, .waits = pairs.missing};
+  const ModelFactor& factor = pairs.factor;
+  return {.value = statistic == Statistic::bias      ? factor.bias
+                   : statistic == Statistic::scatter ? factor.scatter
+                                                     : factor.model_scatter,
+          .detail =
+              fmt::format("bias {:.3g} to {:.3g} with 95 % confidence", factor.bias_low, factor.bias_high)};
 }
 
 // ---- comparing ----
@@ -265,7 +278,8 @@ const char* name_of_statistic(Statistic statistic) {
   return "value";
 }
 
-GateStatus status_of(const Gate& gate, const Measurement& measurement) {
+GateStatus status_of(const Gate& gate, const Measured& measurement) {
+  if (measurement.waits) return GateStatus::no_measurement;
   const bool measured = std::isfinite(measurement.value);
   const bool green = measured && holds(gate.comparison, measurement.value, gate.threshold);
   if (!gate.must_fail) return green ? GateStatus::pass : GateStatus::fail;
@@ -273,9 +287,15 @@ GateStatus status_of(const Gate& gate, const Measurement& measurement) {
   return measured || measurement.ended_early ? GateStatus::red_as_expected : GateStatus::fail;
 }
 
-GateResult result_of(const Gate& gate, const std::string& scope, const Measurement& measurement) {
+/// What a gate looks at.
+std::string object_of(const Gate& gate) {
+  if (!gate.pairs.empty()) return gate.pairs;
+  return gate.metric.empty() ? gate.curve : gate.metric;
+}
+
+GateResult result_of(const Gate& gate, const std::string& scope, const Measured& measurement) {
   GateResult result{.id = gate.id,
-                    .metric = gate.metric.empty() ? gate.curve : gate.metric,
+                    .metric = object_of(gate),
                     .statistic = name_of_statistic(gate.statistic),
                     .basis = gate.basis,
                     .reason = gate.reason,
@@ -293,6 +313,18 @@ GateResult result_of(const Gate& gate, const std::string& scope, const Measureme
 
 // ---- runs ----
 
+/// The curves of the case's cuts, as far as their snapshots were taken.
+void add_cuts(const Case& definition, const Record& record, std::vector<Curve>& curves) {
+  for (const Cut& cut : definition.cuts) {
+    const std::string moment = moment_of(definition.snapshots[static_cast<std::size_t>(cut.snapshot)]);
+    for (const Snapshot& snapshot : record.snapshots) {
+      if (snapshot.moment != moment) continue;
+      if (std::optional<Curve> curve = curve_along(cut, map_of(snapshot, cut.quantity)))
+        curves.push_back(*std::move(curve));
+    }
+  }
+}
+
 RunVerdict judged_run(const Case& definition, const RunRequest& request, Record record,
                       const Judge& judge_run) {
   RunVerdict run;
@@ -302,6 +334,7 @@ RunVerdict judged_run(const Case& definition, const RunRequest& request, Record 
       Judgement judgement = judge_run(definition, request, record);
       run.metrics = std::move(judgement.metrics);
       run.curves = std::move(judgement.curves);
+      add_cuts(definition, record, run.curves);
       for (const Reading& reading : definition.readings) {
         const ReadOff value = read_off(reading, run.curves);
         if (value.lack.empty()) run.metrics[metric_of(reading).name] = value.value;
@@ -330,12 +363,16 @@ class Bench {
           judged_run(definition, definition.runs[run], std::move(records[run]), judge_run));
     }
     covered_.resize(records.size(), false);
+    compare_with_measurements(verdict_);
+    verdict_.pairs = judge_pairs(verdict_);
     build_series();
   }
 
   CaseVerdict verdict() && {
     for (const Gate& gate : definition().gates) {
-      const bool applied = gate.statistic == Statistic::value ? apply_to_runs(gate) : apply_to_series(gate);
+      const bool applied = !gate.pairs.empty()                  ? apply_to_pairs(gate)
+                           : gate.statistic == Statistic::value ? apply_to_runs(gate)
+                                                                : apply_to_series(gate);
       if (!applied) refuse(gate, "the gate matches no run of the sweep");
     }
     require_completion();
@@ -362,11 +399,20 @@ class Bench {
     return !runs.empty();
   }
 
+  bool apply_to_pairs(const Gate& gate) {
+    for (const PairsVerdict& pairs : verdict_.pairs) {
+      if (pairs.id != gate.pairs) continue;
+      const std::string scope = fmt::format("{} pairs, {}", pairs.pairs.size(), pairs.title);
+      verdict_.gates.push_back(result_of(gate, scope, measure_pairs(gate.statistic, pairs)));
+    }
+    return true;
+  }
+
   bool apply_to_series(const Gate& gate) {
-    const std::vector<Group> groups =
+    const std::vector<RunGroup> groups =
         groups_across(definition(), selected_runs(definition(), gate.where), gate.across);
-    for (const Group& group : groups) {
-      const Measurement measurement = measure(definition(), gate, levels_of(group), cell_sizes_of(group));
+    for (const RunGroup& group : groups) {
+      const Measured measurement = measure(definition(), gate, levels_of(group), cell_sizes_of(group));
       series_of(gate.across, group.fixed)
           .gates.push_back(result_of(gate, scope_across(group, gate), measurement));
       for (std::size_t run : group.runs) covered_[run] = covered_[run] || gate.must_fail;
@@ -408,19 +454,19 @@ class Bench {
     }
   }
 
-  std::vector<const RunVerdict*> levels_of(const Group& group) const {
+  std::vector<const RunVerdict*> levels_of(const RunGroup& group) const {
     std::vector<const RunVerdict*> levels;
     for (std::size_t run : group.runs) levels.push_back(&verdict_.runs[run]);
     return levels;
   }
 
-  std::vector<double> cell_sizes_of(const Group& group) const {
+  std::vector<double> cell_sizes_of(const RunGroup& group) const {
     std::vector<double> sizes;
     for (std::size_t run : group.runs) sizes.push_back(definition().runs[run].scene.cell_size);
     return sizes;
   }
 
-  static std::string scope_across(const Group& group, const Gate& gate) {
+  static std::string scope_across(const RunGroup& group, const Gate& gate) {
     std::string refined = gate.across.substr(gate.across.rfind('/') + 1);
     std::replace(refined.begin(), refined.end(), '_', ' ');
     const std::string over = fmt::format("{} values of {}", group.runs.size(), refined);
@@ -437,20 +483,20 @@ class Bench {
   void build_series() {
     std::vector<std::string> refined;
     for (const Gate& gate : definition().gates) {
-      if (gate.statistic != Statistic::value) refined.push_back(gate.across);
+      if (!gate.across.empty()) refined.push_back(gate.across);
     }
     for (const FigureRequest& figure : definition().figures) {
       if (!figure.over.empty()) refined.push_back(figure.over);
     }
     for (auto across = refined.begin(); across != refined.end(); ++across) {
       if (std::find(refined.begin(), across, *across) != across) continue;
-      for (const Group& group : groups_across(definition(), selected_runs(definition(), {}), *across)) {
+      for (const RunGroup& group : groups_across(definition(), selected_runs(definition(), {}), *across)) {
         verdict_.series.push_back(series_from(group, *across));
       }
     }
   }
 
-  SeriesVerdict series_from(const Group& group, const std::string& across) const {
+  SeriesVerdict series_from(const RunGroup& group, const std::string& across) const {
     SeriesVerdict series;
     series.across = across;
     series.fixed = group.fixed;

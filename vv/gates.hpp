@@ -16,6 +16,7 @@ using Judge = std::function<Judgement(const Case&, const RunRequest&, const Reco
 /// - A must-fail control is red as expected when the value violates its threshold, or could not be measured
 ///   because the run ended early in an outcome the solver names. A value absent from a completed run, or a
 ///   run that died of an exception, is a failure of the control.
+/// - A gate on a comparison whose measurement is an empty slot waits: it is neither good nor bad.
 /// - A gate that matches no run, a case without runs and a case without gates are failures.
 /// - Every run that no control and no gate on the metric `completed` covers gets the gate `run_completed`.
 /// - The metric `bits_differ` is 0 when the repeat of the run has the same digest, 1 when it has not, absent

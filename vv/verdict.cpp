@@ -71,6 +71,64 @@ Json outcome_to_json(const Record& record) {
   return json;
 }
 
+Json comparisons_to_json(const std::vector<CurveComparison>& comparisons) {
+  Json json = Json::array();
+  for (const CurveComparison& comparison : comparisons) {
+    Json entry = {{"measurement", comparison.measurement},
+                  {"agreement", name_of(comparison.agreement)},
+                  {"lack", comparison.lack}};
+    for (const ComparisonMetric& metric : comparison_metrics()) {
+      // Without a comparison the numbers are those of nothing.
+      entry[metric.name] = comparison.lack.empty() ? number(metric.value(comparison)) : Json(nullptr);
+    }
+    entry.update({{"abscissa", numbers(comparison.abscissa)},
+                  {"measured", numbers(comparison.measured)},
+                  {"simulated", numbers(comparison.simulated)},
+                  {"u_measured", numbers(comparison.u_measured)},
+                  {"u_numerical", numbers(comparison.u_numerical)},
+                  {"u_input", numbers(comparison.u_input)},
+                  {"u_validation", numbers(comparison.u_validation)}});
+    json.push_back(std::move(entry));
+  }
+  return json;
+}
+
+Json pairs_to_json(const std::vector<PairsVerdict>& all) {
+  Json json = Json::array();
+  for (const PairsVerdict& pairs : all) {
+    Json entry = {{"id", pairs.id}, {"title", pairs.title}, {"dimension", pairs.dimension}, {"lack", pairs.lack}};
+    const ModelFactor& factor = pairs.factor;
+    const bool judged = pairs.lack.empty();
+    const std::pair<const char*, double> facts[] = {
+        {"bias", factor.bias},          {"bias_low", factor.bias_low},
+        {"bias_high", factor.bias_high}, {"scatter", factor.scatter},
+        {"model_scatter", factor.model_scatter}, {"least", factor.least}, {"greatest", factor.greatest}};
+    for (const auto& [name, value] : facts) entry[name] = judged ? number(value) : Json(nullptr);
+    entry["pairs"] = Json::array();
+    for (const Pair& pair : pairs.pairs) {
+      entry["pairs"].push_back(
+          {{"name", pair.name}, {"measured", number(pair.measured)}, {"predicted", number(pair.predicted)}});
+    }
+    json.push_back(std::move(entry));
+  }
+  return json;
+}
+
+/// Which numbers a case was judged against, so that results tell them from others of the same name.
+Json curve_files_to_json(const Case& definition) {
+  Json json = Json::object();
+  for (const auto& file : curve_files_of(definition)) {
+    json[file->id] = {{"status", file->missing ? "missing" : "present"},
+                      {"citation", file->citation},
+                      {"doi", file->doi},
+                      {"place", file->place},
+                      {"origin", file->origin},
+                      {"used_for_calibration", file->used_for_calibration},
+                      {"hash", file->hash}};
+  }
+  return json;
+}
+
 Json run_to_json(const RunVerdict& run) {
   const Record& record = run.record;
   return {{"parameters", parameters_to_json(run.parameters)},
@@ -81,6 +139,7 @@ Json run_to_json(const RunVerdict& run) {
             {"steps", record.cost.steps},
             {"particle_steps", record.cost.particle_steps},
             {"memory_bytes", record.cost.memory_bytes}}},
+          {"comparisons", comparisons_to_json(run.comparisons)},
           {"gates", gates_to_json(run.gates)},
           {"time_step", number(record.time_step)},
           {"end_time", number(record.end_time)},
@@ -121,8 +180,10 @@ Json case_to_json(const CaseVerdict& verdict) {
                {"figure_of_paper", verdict.definition.figure_of_paper},
                {"status", name_of(verdict.status)},
                {"not_run_reason", verdict.not_run_reason},
+               {"curve_files", curve_files_to_json(verdict.definition)},
                {"runs", Json::array()},
                {"series", Json::array()},
+               {"pairs", pairs_to_json(verdict.pairs)},
                {"gates", gates_to_json(verdict.gates)}};
   for (const RunVerdict& run : verdict.runs) json["runs"].push_back(run_to_json(run));
   for (const SeriesVerdict& series : verdict.series) json["series"].push_back(series_to_json(series));
@@ -173,12 +234,15 @@ std::string scope_of(const std::string& pointer, const Json& value) {
 }
 
 void count(const GateResult& gate, Counts& counts) {
-  if (gate.must_fail) {
+  if (gate.waits()) {
+    ++counts.gates;
+    ++counts.gates_waiting;
+  } else if (gate.must_fail) {
     ++counts.controls;
     ++(gate.good() ? counts.controls_red : counts.controls_green);
   } else {
     ++counts.gates;
-    ++(gate.waits() ? counts.gates_waiting : gate.good() ? counts.gates_passed : counts.gates_failed);
+    ++(gate.good() ? counts.gates_passed : counts.gates_failed);
   }
 }
 

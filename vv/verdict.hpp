@@ -87,7 +87,7 @@ double margin(const GateResult& result);
 /// Single measurements and what was predicted for them.
 struct PairsVerdict {
   std::string id, title;
-  std::string unit;         ///< SI, of measured and predicted
+  std::string dimension;    ///< of measured and predicted, which are in its SI unit: "pressure", "ratio", ...
   std::vector<Pair> pairs;  ///< those that could be predicted
   std::vector<std::string> unpredicted;  ///< names of the runs that have no number, with the reason
   std::string lack;                      ///< why there is no factor; empty beside one
