@@ -14,6 +14,7 @@
 #include "reports/figures.hpp"
 #include "reports/page_data.hpp"
 #include "reports/performance_section.hpp"
+#include "reports/validation_section.hpp"
 #include "vv/curves.hpp"
 #include "vv/norms.hpp"
 
@@ -234,7 +235,8 @@ data gate_tallies(const std::vector<PlacedGate>& gates, const vv::Case& definiti
   data tallies = list();
   for (const std::string& id : ids) {
     const std::vector<const vv::GateResult*>& results = by_id[id];
-    const auto good = std::count_if(results.begin(), results.end(), [](const auto* r) { return r->good(); });
+    const auto good = std::count_if(results.begin(), results.end(),
+                                    [](const auto* r) { return r->good() && !r->waits(); });
     const auto unmeasured =
         std::count_if(results.begin(), results.end(), [](const auto* r) { return !std::isfinite(r->value); });
     tallies << object(
@@ -511,6 +513,7 @@ data case_section(const vv::CaseVerdict& verdict, const std::vector<DrawnFigure>
               {"not_run_reason", verdict.status == vv::CaseStatus::not_run ? verdict.not_run_reason : ""}});
   set_exact_solutions(section, definition);
   section.set("figures", figure_entries(verdict, figures, figure_number));
+  set_validation(section, verdict);
   const std::vector<PlacedGate> gates = gates_of(verdict);
   set_list(section, "gates", gate_groups(gates, false));
   set_list(section, "controls", gate_groups(gates, true));
@@ -535,6 +538,8 @@ std::string chip_of(const vv::Claim& claim, const std::vector<PlacedGate>& evide
   if (claim.finding == vv::Finding::untested) return chip("open", "not tested");
   if (evidence.empty() || !complete) return chip("open", "NOT MEASURED");
   if (!std::all_of(evidence.begin(), evidence.end(), is_good)) return chip("fail", "IN DOUBT");
+  if (std::any_of(evidence.begin(), evidence.end(), [](const PlacedGate& gate) { return gate.result->waits(); }))
+    return chip("open", "not tested: no measurement");
   switch (claim.finding) {
     case vv::Finding::seen:
       return chip("pass", "holds");
@@ -591,6 +596,9 @@ void set_verdict(data& page, const vv::CampaignVerdict& verdict) {
   if (counts.cases_not_run > 0)
     sentence += fmt::format(" {} case{} not run.", counts.cases_not_run,
                             counts.cases_not_run == 1 ? " was" : "s were");
+  if (counts.gates_waiting > 0)
+    sentence += fmt::format(" {} gate{} for a measurement that is missing.", counts.gates_waiting,
+                            counts.gates_waiting == 1 ? " waits" : "s wait");
   page.set("verdict_sentence", sentence);
   int completed = 0, expected = 0;
   for (const vv::CaseVerdict& c : verdict.cases)
@@ -616,6 +624,8 @@ void set_verdict(data& page, const vv::CampaignVerdict& verdict) {
   page.set("any_case_failed", flag(counts.cases_failed > 0));
   page.set("any_case_not_run", flag(counts.cases_not_run > 0));
   page.set("any_gate_failed", flag(counts.gates_failed > 0));
+  page.set("gates_waiting", std::to_string(counts.gates_waiting));
+  page.set("any_gate_waiting", flag(counts.gates_waiting > 0));
   page.set("any_control_green", flag(counts.controls_green > 0));
 }
 
@@ -664,7 +674,7 @@ void set_failed_gates(data& page, const vv::CampaignVerdict& verdict) {
         row.set("case_id", c.definition.id);
         failed << row;
       }
-      if (!std::isfinite(gate.result->value))
+      if (!std::isfinite(gate.result->value) && !gate.result->waits())
         not_measured << object(
             {{"text",
               fmt::format(
@@ -771,6 +781,7 @@ std::string report_html(const vv::CampaignVerdict& verdict, const std::vector<Dr
   page.set("case_sections", sections);
   page.set("commands", commands);
   set_runs_across_cases(page, verdict);
+  set_validation_overview(page, verdict);
   page.set("performance", performance_section(performance, verdict, performance_figures, figure_number));
   page.set("glossary", glossary());
   return rendered(document_template(), page);

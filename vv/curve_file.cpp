@@ -243,6 +243,8 @@ std::string dimension_of_unit(const std::string& unit) {
   return known ? known->dimension : "";
 }
 
+double si_of_unit(const std::string& unit) { return in_si(1.0, known_unit(unit).value()); }
+
 CurveFile parse_curve_file(const std::string& text, const std::filesystem::path& file) {
   try {
     const Json json = parse_json(text);

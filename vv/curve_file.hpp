@@ -73,6 +73,9 @@ std::string hash_of_values(const nlohmann::ordered_json& curve_file);
 /// known.
 std::string dimension_of_unit(const std::string& unit);
 
+/// One of a unit that is known, in SI units: 0.001 for "mm".
+double si_of_unit(const std::string& unit);
+
 /// Directory of the curve files that come with the program.
 std::filesystem::path shipped_curves();
 
