@@ -43,7 +43,8 @@ std::string uncertainty_text(const vv::StatedUncertainty& uncertainty, const std
     case Kind::none:
       return "none";
     case Kind::absolute:
-      return number_markup(uncertainty.value / vv::si_of_unit(unit)) + (unit == "1" ? "" : " " + unit);
+      return fmt::format("{}{}{}", number_markup(uncertainty.value / vv::si_of_unit(unit)),
+                         unit == "1" ? "" : " ", unit == "1" ? "" : unit);
     case Kind::relative:
       return percent(uncertainty.value);
   }

@@ -67,9 +67,9 @@ inline constexpr double least_overlap = 0.95;
 /// What is compared with a measured curve.
 struct ComparedCurves {
   const Curve* simulated = nullptr;
-  std::vector<const Curve*> refined;  ///< the same of its refinement, from coarse to fine; may be empty
-  std::vector<double> cell_size;      ///< of those [m]
-  std::vector<std::vector<const Curve*>> inputs;  ///< for each uncertain input the curves of its values
+  std::vector<const Curve*> refined = {};  ///< the same of its refinement, from coarse to fine; may be empty
+  std::vector<double> cell_size = {};      ///< of those [m]
+  std::vector<std::vector<const Curve*>> inputs = {};  ///< for each uncertain input the curves of its values
   double within = 0.0;  ///< half-width of the mean that curves are read with; 0 interpolates
 };
 
