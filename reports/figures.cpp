@@ -13,6 +13,7 @@
 
 #include "reports/figure_parts.hpp"
 #include "reports/typography.hpp"
+#include "reports/validation_figures.hpp"
 #include "vv/curves.hpp"
 #include "vv/norms.hpp"
 
@@ -1316,6 +1317,9 @@ std::string orders_markup(const std::vector<double>& orders) {
 }
 
 Plot plot_of(const vv::CaseVerdict& verdict, const vv::FigureRequest& request) {
+  if (request.kind == "comparison") return comparison_plot_of(verdict, request);
+  if (request.kind == "pairs") return pairs_plot_of(verdict, request);
+  if (request.kind == "trend") return trend_plot_of(verdict, request);
   const std::vector<Member> members = members_of(verdict, request);
   const auto panels = distinct(members, [](const Member& m) { return m.panel; });
   Plot plot;
@@ -1396,6 +1400,9 @@ FieldPlot field_plot_of(const vv::CaseVerdict& verdict, const vv::FigureRequest&
     plot.y = {request.view->lower[1], request.view->upper[1]};
   }
   plot.scale = color_scale(tame, all, *quantity);
+  std::vector<const vv::RunVerdict*> runs;
+  for (const Member& member : members) runs.push_back(member.run);
+  add_measured_lines(plot, verdict, request, runs, moments);
   if (members.empty()) {
     plot.panels.push_back({"", std::nullopt, "No run was selected for this figure."});
   } else {

@@ -73,6 +73,10 @@ std::string hash_of_values(const nlohmann::ordered_json& curve_file);
 /// known.
 std::string dimension_of_unit(const std::string& unit);
 
+/// How much one of a unit of a curve file is in SI (an angle in degrees): 1e-3 of "mm", 1e3 of "kPa", 1 of "1";
+/// 1 if it is not known.
+double si_of_unit(const std::string& unit);
+
 /// Directory of the curve files that come with the program.
 std::filesystem::path shipped_curves();
 
