@@ -85,6 +85,13 @@ std::vector<double> scaled(std::vector<double> values, double factor) {
   return values;
 }
 
+/// A frame that says why nothing stands in it.
+Panel nothing_panel(const std::string& why) {
+  Panel panel;
+  panel.absence = why;
+  return panel;
+}
+
 // ---- comparison
 // --------------------------------------------------------------------------------------------------
 
@@ -236,6 +243,31 @@ void include_band(Extent& extent, const Band& band) {
     for (const double value : *side) extent.include(value);
 }
 
+/// A run's whole curve over the abscissae shown; pale if others are compared and it is not.
+PlotCurve whole_curve(const Compared& compared, const Member& member, const Range& abscissae, bool pale) {
+  const vv::Curve& curve = *compared.curve(member);
+  Look look = line_look(member);
+  if (pale) {
+    look.color = tint(look.color, 0.45);
+    look.line_width = 0.8;
+  }
+  PlotCurve line{member.series + (pale ? ", not compared" : ""), look, scaled(curve.x, compared.x.factor),
+                 scaled(curve.y, compared.y.factor), layer_of(look)};
+  cut_to(abscissae, line);
+  return line;
+}
+
+/// Of points with the ends of their error bars.
+Extent extent_with_bars(const PlotCurve& points) {
+  Extent extent;
+  for (std::size_t i = 0; i < points.y.size(); ++i) {
+    extent.include(points.y[i] - points.bars[i]);
+    extent.include(points.y[i] + points.bars[i]);
+  }
+  return extent;
+}
+
+/// The measured points and the runs' curves.
 Panel upper_panel(const Compared& compared, const std::string& title) {
   Panel panel;
   panel.title = title;
@@ -243,31 +275,17 @@ Panel upper_panel(const Compared& compared, const std::string& title) {
   panel.y.label = compared.y.label;
   std::vector<Extent> extents;
   if (!compared.file().rows.empty()) {
-    PlotCurve points = measured_points(compared);
-    Extent& extent = extents.emplace_back(extent_of(points.y));
-    for (std::size_t i = 0; i < points.y.size(); ++i) {
-      extent.include(points.y[i] - points.bars[i]);
-      extent.include(points.y[i] + points.bars[i]);
-    }
-    panel.curves.push_back(std::move(points));
+    panel.curves = {measured_points(compared)};
+    extents = {extent_with_bars(panel.curves.front())};
   }
   const bool some_judged = !compared.judged_members().empty();
   for (const Member& member : compared.members) {
-    const vv::Curve* curve = compared.curve(member);
-    if (!curve) continue;
-    Look look = line_look(member);
-    std::string label = member.series;
-    if (some_judged && !compared.judged(member)) {
-      look.color = tint(look.color, 0.45);
-      look.line_width = 0.8;
-      label += ", not compared";
-    }
-    PlotCurve line{label, look, scaled(curve->x, compared.x.factor), scaled(curve->y, compared.y.factor),
-                   layer_of(look)};
-    cut_to(panel.x.range, line);
+    if (!compared.curve(member)) continue;
+    const bool judged = compared.judged(member);
+    PlotCurve line = whole_curve(compared, member, panel.x.range, some_judged && !judged);
     Extent& extent = extents.emplace_back(extent_of(line.y));
     panel.curves.push_back(std::move(line));
-    if (!compared.judged(member)) continue;
+    if (!judged) continue;
     if (Band band = own_band(compared, member); !band.x.empty()) {
       include_band(extent, band);
       panel.bands.push_back(std::move(band));
@@ -332,18 +350,40 @@ std::string why_no_difference(const Compared& compared) {
   return reasons.empty() ? "None of these runs is compared with it." : reasons;
 }
 
-/// Simulated minus measured, with what it may be without being an error of the model.
+/// Simulated minus measured of one run.
+PlotCurve difference_of(const Compared& compared, const Member& member) {
+  const vv::CurveComparison& c = *compared.result(member);
+  Look look = look_of_series(member.look);
+  look.marker_size = std::max(look.marker_size, 3.0);
+  if (c.abscissa.size() > many_points) look.marker = MarkerShape::none;
+  PlotCurve line{member.series, look, scaled(c.abscissa, compared.x.factor), {}, 2};
+  for (std::size_t i = 0; i < c.abscissa.size(); ++i)
+    line.y.push_back((c.simulated.at(i) - c.measured.at(i)) * compared.y.factor);
+  return line;
+}
+
+/// What it may be without being an error of the model: 2 u_val on either side of zero.
+Band validation_band(const Compared& compared, const Member& member, const Color& color) {
+  const vv::CurveComparison& c = *compared.result(member);
+  const std::vector<double> upper = scaled(c.u_validation, 2.0 * compared.y.factor);
+  return {"", color, scaled(c.abscissa, compared.x.factor), scaled(upper, -1.0), upper};
+}
+
+/// The frame in which the difference would stand if there were one.
+Panel no_difference_panel(const Compared& compared) {
+  Panel panel = nothing_panel(why_no_difference(compared));
+  panel.hatched = compared.file().missing;
+  panel.title = panel.hatched ? "Measured" : "Simulated minus measured";
+  panel.height = absence_height;
+  return panel;
+}
+
+/// The differences of the runs over the abscissae of the panel above.
 Panel lower_panel(const Compared& compared, const Range& abscissae) {
+  const std::vector<Member> judged = compared.judged_members();
+  if (judged.empty()) return no_difference_panel(compared);
   Panel panel;
   panel.height = difference_height;
-  const std::vector<Member> judged = compared.judged_members();
-  if (judged.empty()) {
-    panel.absence = why_no_difference(compared);
-    panel.hatched = compared.file().missing;
-    panel.title = panel.hatched ? "Measured" : "Simulated minus measured";
-    panel.height = absence_height;
-    return panel;
-  }
   panel.title = title_below(compared);
   panel.x = {compared.x.label, Scale::linear, abscissae, {}};
   panel.y.label = in_unit("difference", compared.ordinate().unit);
@@ -352,18 +392,9 @@ Panel lower_panel(const Compared& compared, const Range& abscissae) {
   panel.curves.push_back({"", zero, {abscissae.lower, abscissae.upper}, {0.0, 0.0}, 0});
   std::vector<Extent> extents;
   for (const Member& member : judged) {
-    const vv::CurveComparison& c = *compared.result(member);
-    Look look = look_of_series(member.look);
-    look.marker_size = std::max(look.marker_size, 3.0);
-    if (c.abscissa.size() > many_points) look.marker = MarkerShape::none;
-    PlotCurve line{member.series, look, scaled(c.abscissa, compared.x.factor), {}, 2};
-    Band band{"", judged.size() == 1 ? uncertainty_color : translucent(look.color), line.x, {}, {}};
-    for (std::size_t i = 0; i < c.abscissa.size(); ++i) {
-      line.y.push_back((c.simulated.at(i) - c.measured.at(i)) * compared.y.factor);
-      const double reach = 2.0 * c.u_validation.at(i) * compared.y.factor;
-      band.lower.push_back(-reach);
-      band.upper.push_back(reach);
-    }
+    PlotCurve line = difference_of(compared, member);
+    Band band = validation_band(compared, member,
+                                judged.size() == 1 ? uncertainty_color : translucent(line.look.color));
     include_band(extents.emplace_back(extent_of(line.y)), band);
     panel.curves.push_back(std::move(line));
     panel.bands.push_back(std::move(band));
@@ -389,12 +420,6 @@ const vv::Measurement* measurement_of(const vv::Case& definition, const std::str
   for (const vv::Measurement& measurement : definition.measurements)
     if (measurement.id == id && measurement.file) return &measurement;
   return nullptr;
-}
-
-Panel nothing_panel(const std::string& why) {
-  Panel panel;
-  panel.absence = why;
-  return panel;
 }
 
 /// A label for the legend of a picture so wide; one that does not fit stands in a note, a brief one for it.
@@ -544,87 +569,108 @@ std::vector<std::string> notes_on_pairs(const vv::Case& definition, const PairGr
   return notes;
 }
 
+/// The two panels of a group, and how far their values reach.
+struct PairPanels {
+  Panel both, ratio;
+  Extent measured, predicted, ratios;
+};
+
+const Stroke bias_stroke{muted, 1.0, {1.5, 1.5}};
+
+Look line_of(const Stroke& stroke) {
+  Look look;
+  look.color = stroke.color;
+  look.line_width = stroke.width;
+  look.dash = stroke.dash;
+  return look;
+}
+
+void add_marks(PairPanels& panels, const vv::PairsVerdict& pairs, PlotCurve marks, double factor) {
+  PlotCurve ratios = marks;
+  for (const vv::Pair& pair : pairs.pairs) {
+    if (!positive(pair)) continue;
+    marks.x.push_back(pair.measured * factor);
+    marks.y.push_back(pair.predicted * factor);
+    ratios.x.push_back(marks.x.back());
+    ratios.y.push_back(pair.predicted / pair.measured);
+    panels.measured.include(marks.x.back());
+    panels.predicted.include(marks.y.back());
+    panels.ratios.include(ratios.y.back());
+  }
+  if (pairs.lack.empty()) {
+    panels.ratio.curves.push_back({"bias", line_of(bias_stroke), {}, {}, 0});
+    panels.ratio.levels.push_back(
+        {pairs.factor.bias, "", "", {marks.look.color, bias_stroke.width, bias_stroke.dash}});
+  }
+  panels.both.curves.push_back(std::move(marks));
+  panels.ratio.curves.push_back(std::move(ratios));
+}
+
+void set_pair_axes(PairPanels& panels, const std::string& subject, const std::string& unit) {
+  Panel &both = panels.both, &ratio = panels.ratio;
+  const std::string of = subject.empty() ? "" : " " + subject;
+  Extent common = panels.measured;
+  common.include(panels.predicted.lower);
+  common.include(panels.predicted.upper);
+  const Range range = logarithmic_room(common, 8.0);
+  both.title = "Predicted beside measured";
+  both.x = {in_unit("measured" + of, unit), Scale::logarithmic, range, {}};
+  both.y = {in_unit("predicted" + of, unit), Scale::logarithmic, range, {}};
+  ratio.title = "The ratio of both";
+  ratio.x = {both.x.label, Scale::logarithmic, logarithmic_room(panels.measured, 8.0), {}};
+  ratio.y = {"predicted / measured", Scale::logarithmic, {}, {}};
+}
+
+/// Lines of equal ratios; the axis of ratios grows to hold them.
+void add_guides(PairPanels& panels) {
+  const Range range = panels.both.x.range;
+  for (const Guide& guide : guides_of(panels.ratios)) {
+    // Between the places where it enters and leaves the frame.
+    const double lower = std::max(range.lower, range.lower / guide.ratio),
+                 upper = std::min(range.upper, range.upper / guide.ratio);
+    panels.both.curves.push_back(
+        {guide.legend, line_of(guide.stroke), {lower, upper}, {lower * guide.ratio, upper * guide.ratio}, 0});
+    panels.ratio.levels.push_back({guide.ratio, "", guide.legend, guide.stroke});
+    panels.ratios.include(guide.ratio);
+  }
+  panels.ratio.y.range = logarithmic_room(panels.ratios, 4.0);
+}
+
+/// The frame of a group in which nothing is predicted: the first of its notes, and the others below it.
+Panel unpredicted_panel(const PairGroup& group, std::vector<std::string> notes) {
+  if (notes.empty()) notes = {"Nothing was predicted."};
+  Panel panel = nothing_panel(notes.front());
+  panel.hatched = std::all_of(group.pairs.begin(), group.pairs.end(),
+                              [](const vv::PairsVerdict* pairs) { return pairs->missing; });
+  panel.notes.assign(notes.begin() + 1, notes.end());
+  return panel;
+}
+
 /// Predicted against measured, and the ratio of both.
 std::vector<Panel> pair_panels(const vv::Case& definition, const PairGroup& group, double width) {
-  Panel both, ratio;
-  const double factor = 1.0 / vv::si_of_unit(group.unit);
-  Extent measured, predicted, ratios;
-  const Stroke bias_stroke{muted, 1.0, {1.5, 1.5}};
-  bool any_bias = false;
-  both.notes = notes_on_pairs(definition, group);
+  PairPanels panels;
+  std::vector<std::string> notes = notes_on_pairs(definition, group);
   for (std::size_t k = 0; k < group.pairs.size(); ++k) {
     const vv::PairsVerdict& pairs = *group.pairs[k];
     if (pairs.missing) continue;
-    PlotCurve marks{
-        fitted(label_of(pairs), brief_label_of(pairs), width, both.notes), pair_look(k), {}, {}, 3};
-    PlotCurve ratio_marks = marks;
-    const Look ratio_look = marks.look;
-    for (const vv::Pair& pair : pairs.pairs) {
-      if (!positive(pair)) continue;
-      marks.x.push_back(pair.measured * factor);
-      marks.y.push_back(pair.predicted * factor);
-      ratio_marks.x.push_back(marks.x.back());
-      ratio_marks.y.push_back(pair.predicted / pair.measured);
-      measured.include(marks.x.back());
-      predicted.include(marks.y.back());
-      ratios.include(ratio_marks.y.back());
-    }
-    both.curves.push_back(std::move(marks));
-    ratio.curves.push_back(std::move(ratio_marks));
-    if (!pairs.lack.empty() || pairs.pairs.empty()) continue;
-    any_bias = true;
-    ratio.levels.push_back({pairs.factor.bias, "", "", bias_stroke});
-    ratio.levels.back().stroke.color = ratio_look.color;
+    const std::string label = fitted(label_of(pairs), brief_label_of(pairs), width, notes);
+    add_marks(panels, pairs, {label, pair_look(k), {}, {}, 3}, 1.0 / vv::si_of_unit(group.unit));
   }
-  if (measured.empty()) {
-    Panel nothing = nothing_panel(both.notes.empty() ? "Nothing was predicted." : both.notes.front());
-    nothing.hatched = std::all_of(group.pairs.begin(), group.pairs.end(),
-                                  [](const vv::PairsVerdict* pairs) { return pairs->missing; });
-    nothing.notes.assign(both.notes.begin() + (both.notes.empty() ? 0 : 1), both.notes.end());
-    return {nothing};
+  if (panels.measured.empty()) return {unpredicted_panel(group, std::move(notes))};
+  panels.both.notes = std::move(notes);
+  set_pair_axes(panels, subject_of(definition, group), group.unit);
+  add_guides(panels);
+  for (Panel* panel : {&panels.both, &panels.ratio}) {
+    label_plainly(panel->x);
+    label_plainly(panel->y);
   }
-  const std::string subject = subject_of(definition, group);
-  const std::string of = subject.empty() ? "" : " " + subject;
-  both.x.scale = both.y.scale = ratio.x.scale = ratio.y.scale = Scale::logarithmic;
-  Extent common = measured;
-  common.include(predicted.lower);
-  common.include(predicted.upper);
-  both.x.range = both.y.range = logarithmic_room(common, 8.0);
-  both.x.label = in_unit("measured" + of, group.unit);
-  both.y.label = in_unit("predicted" + of, group.unit);
-  ratio.x = {both.x.label, Scale::logarithmic, logarithmic_room(measured, 8.0), {}};
-  ratio.y.label = "predicted / measured";
-  both.title = "Predicted beside measured";
-  ratio.title = "The ratio of both";
-  for (const Guide& guide : guides_of(ratios)) {
-    Look look;
-    look.color = guide.stroke.color;
-    look.line_width = guide.stroke.width;
-    look.dash = guide.stroke.dash;
-    // Between the places where it enters and leaves the frame.
-    const double lower = std::max(both.x.range.lower, both.y.range.lower / guide.ratio),
-                 upper = std::min(both.x.range.upper, both.y.range.upper / guide.ratio);
-    both.curves.push_back(
-        {guide.legend, look, {lower, upper}, {lower * guide.ratio, upper * guide.ratio}, 0});
-    ratio.levels.push_back({guide.ratio, "", guide.legend, guide.stroke});
-    ratios.include(guide.ratio);
-  }
-  if (any_bias) {
-    Look bias;
-    bias.color = muted;
-    bias.line_width = bias_stroke.width;
-    bias.dash = bias_stroke.dash;
-    ratio.curves.push_back({"bias", bias, {}, {}, 0});
-  }
-  ratio.y.range = logarithmic_room(ratios, 4.0);
-  for (Axis* axis : {&both.x, &both.y, &ratio.x, &ratio.y}) label_plainly(*axis);
-  return {both, ratio};
+  return {panels.both, panels.ratio};
 }
 
 // ---- trend
 // ------------------------------------------------------------------------------------------------------
 
-/// A published curve over the columns that belong to the metrics of a panel; null columns if it has none.
+/// A published curve and its columns for the two metrics of a panel.
 struct Published {
   const vv::CurveFile* file = nullptr;
   std::size_t x = 0, y = 0;
@@ -638,13 +684,6 @@ std::vector<Published> published_beside(const vv::FigureRequest& request, std::s
     if (x + 1 + metric < file->columns.size()) curves.push_back({file.get(), x, x + 1 + metric});
   }
   return curves;
-}
-
-/// A metric in the unit of the published column beside it, or as it is shown elsewhere.
-Quantity shown_beside(const std::string& metric, const vv::Case& definition, double reach,
-                      const std::optional<std::string>& unit) {
-  if (!unit) return shown_metric(metric, definition, reach);
-  return {1.0 / vv::si_of_unit(*unit), in_unit(name_of_metric(metric, definition), *unit)};
 }
 
 /// The ordinate of a line at an abscissa, on the axes it is drawn on; NaN beyond its ends.
@@ -705,65 +744,77 @@ std::vector<PlotCurve> published_lines(const std::vector<Published>& published, 
   return lines;
 }
 
-Range trend_range(const Extent& extent, bool logarithmic) {
-  return logarithmic ? logarithmic_room(extent, 4.0) : extent.widened(0.08);
+/// A metric on one axis of a trend.
+struct TrendAxis {
+  std::string metric;
+  Quantity shown;
+};
+
+/// The metric in the unit of the column beside it, if there is one.
+TrendAxis trend_axis(const std::string& metric, const std::vector<Member>& members,
+                     const vv::Case& definition, const std::vector<Published>& published,
+                     std::size_t Published::*column) {
+  if (!published.empty()) {
+    const std::string& unit = published.front().file->columns[published.front().*column].unit;
+    return {metric, {1.0 / vv::si_of_unit(unit), in_unit(name_of_metric(metric, definition), unit)}};
+  }
+  Extent reach;
+  for (const Member& member : members) reach.include(metric_of(*member.run, metric));
+  return {metric, shown_metric(metric, definition, reach.empty() ? 0.0 : reach.reach())};
 }
 
-Panel trend_panel(const std::vector<Member>& members, const vv::CaseVerdict& verdict,
-                  const vv::FigureRequest& request, std::size_t number, double width) {
-  const std::string& metric = request.metrics[number];
-  const vv::Case& definition = verdict.definition;
-  const std::vector<Published> published = published_beside(request, number);
-  std::optional<std::string> x_unit, y_unit;
-  if (!published.empty()) {
-    x_unit = published.front().file->columns[published.front().x].unit;
-    y_unit = published.front().file->columns[published.front().y].unit;
-  }
-  Extent x_reach, y_reach;
+/// The runs of one series; without points if none has both metrics.
+PlotCurve trend_marks(const std::vector<Member>& members, const std::string& series, const TrendAxis& x,
+                      const TrendAxis& y) {
+  PlotCurve marks{series, {}, {}, {}, 3};
   for (const Member& member : members) {
-    x_reach.include(metric_of(*member.run, request.abscissa));
-    y_reach.include(metric_of(*member.run, metric));
+    const double px = metric_of(*member.run, x.metric), py = metric_of(*member.run, y.metric);
+    if (member.series != series || !std::isfinite(px) || !std::isfinite(py)) continue;
+    marks.look = look_of_series(member.look);
+    marks.x.push_back(px * x.shown.factor);
+    marks.y.push_back(py * y.shown.factor);
   }
-  const Quantity x =
-      shown_beside(request.abscissa, definition, x_reach.empty() ? 0.0 : x_reach.reach(), x_unit);
-  const Quantity y = shown_beside(metric, definition, y_reach.empty() ? 0.0 : y_reach.reach(), y_unit);
-  Panel panel;
-  panel.x.label = x.label;
-  panel.y.label = y.label;
-  panel.curves = published_lines(published, x.factor, y.factor, width, panel.notes);
-  const std::size_t lines = panel.curves.size();
-  for (const std::string& label : distinct(members, [](const Member& m) { return m.series; })) {
-    PlotCurve marks{label, {}, {}, {}, 3};
-    for (const Member& member : members) {
-      const double px = metric_of(*member.run, request.abscissa), py = metric_of(*member.run, metric);
-      if (member.series != label || !std::isfinite(px) || !std::isfinite(py)) continue;
-      marks.look = look_of_series(member.look);
-      marks.x.push_back(px * x.factor);
-      marks.y.push_back(py * y.factor);
-    }
-    if (marks.x.empty()) continue;
-    marks.look.line_width = 0.0;
-    marks.look.marker_size = std::max(marks.look.marker_size, 4.4);
-    panel.curves.push_back(std::move(marks));
-  }
+  marks.look.line_width = 0.0;
+  marks.look.marker_size = std::max(marks.look.marker_size, 4.4);
+  return marks;
+}
+
+/// Logarithmic axes if all the panel's curves are above zero.
+void set_trend_ranges(Panel& panel) {
   Extent xs, ys;
   for (const PlotCurve& curve : panel.curves) {
     for (const double value : curve.x) xs.include(value);
     for (const double value : curve.y) ys.include(value);
   }
+  const bool logarithmic = !xs.empty() && xs.lower > 0.0 && ys.lower > 0.0;
+  for (const auto& [axis, extent] : {std::pair{&panel.x, xs}, {&panel.y, ys}}) {
+    axis->scale = logarithmic ? Scale::logarithmic : Scale::linear;
+    axis->range = logarithmic ? logarithmic_room(extent, 4.0) : extent.widened(0.08);
+    label_plainly(*axis);
+  }
+}
+
+Panel trend_panel(const std::vector<Member>& members, const vv::CaseVerdict& verdict,
+                  const vv::FigureRequest& request, std::size_t number, double width) {
+  const std::vector<Published> published = published_beside(request, number);
+  const TrendAxis x = trend_axis(request.abscissa, members, verdict.definition, published, &Published::x),
+                  y = trend_axis(request.metrics[number], members, verdict.definition, published,
+                                 &Published::y);
+  Panel panel;
+  panel.x.label = x.shown.label;
+  panel.y.label = y.shown.label;
+  const std::vector<PlotCurve> lines =
+      published_lines(published, x.shown.factor, y.shown.factor, width, panel.notes);
+  panel.curves = lines;
+  for (const std::string& series : distinct(members, [](const Member& m) { return m.series; }))
+    if (PlotCurve marks = trend_marks(members, series, x, y); !marks.x.empty())
+      panel.curves.push_back(std::move(marks));
+  set_trend_ranges(panel);
+  if (lines.size() > 1) panel.bands = {between(lines, panel.x.scale == Scale::logarithmic)};
   for (std::string& note : notes_on_runs(members, [&](const Member& m) {
-         return !std::isfinite(metric_of(*m.run, request.abscissa) + metric_of(*m.run, metric));
+         return !std::isfinite(metric_of(*m.run, x.metric) + metric_of(*m.run, y.metric));
        }))
     panel.notes.push_back(std::move(note));
-  const bool logarithmic = !xs.empty() && xs.lower > 0.0 && ys.lower > 0.0;
-  if (logarithmic) panel.x.scale = panel.y.scale = Scale::logarithmic;
-  panel.x.range = trend_range(xs, logarithmic);
-  panel.y.range = trend_range(ys, logarithmic);
-  label_plainly(panel.x);
-  label_plainly(panel.y);
-  if (lines > 1)
-    panel.bands = {between({panel.curves.begin(), panel.curves.begin() + static_cast<std::ptrdiff_t>(lines)},
-                           logarithmic)};
   return panel;
 }
 
