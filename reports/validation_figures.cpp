@@ -19,13 +19,14 @@ constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
 constexpr double band_opacity = 0.2;
 constexpr double lone_width = 400.0;        // of a picture with one column [pt]
 constexpr double full_width = 482.0;        // of any other [pt]
-constexpr std::size_t many_points = 60;     // of a measured curve: then its marks are small
+constexpr std::size_t many_points = 60;     // of a measured curve: then it has a band in place of bars
 constexpr double difference_height = 0.62;  // of the panel below, relative to the one above
 constexpr double absence_height = 0.36;     // of a frame in its place
 constexpr double abscissa_margin = 0.06;    // of the measured range, on either side
 constexpr double near_one = 1.5;            // ratios no farther off have lines of 20 % beside them
 
 const Color uncertainty_color{0.35, 0.35, 0.35, band_opacity};
+const Color measured_color{0.1, 0.1, 0.1, 0.14};
 const Color between_color{0.45, 0.45, 0.45, 0.16};
 const Color absent_color{0.6, 0.6, 0.6, 1.0};
 
@@ -154,6 +155,7 @@ std::vector<double> measured_uncertainty(const Compared& compared) {
 PlotCurve measured_points(const Compared& compared) {
   PlotCurve points;
   points.label = "measured" + words_of_uncertainty(compared.ordinate());
+  if (compared.file().rows.size() > many_points) points.label += ", shaded";
   const std::string source = source_of(compared.file());
   if (!source.empty()) points.label += " " + source;
   points.x = scaled(compared.file().column(compared.abscissa), compared.x.factor);
@@ -257,6 +259,17 @@ PlotCurve whole_curve(const Compared& compared, const Member& member, const Rang
   return line;
 }
 
+/// Puts a band in place of error bars so many that they would hide what lies behind them.
+void shade_bars(Panel& panel, PlotCurve& points) {
+  Band band{"", measured_color, points.x, {}, {}};
+  for (std::size_t i = 0; i < points.y.size(); ++i) {
+    band.lower.push_back(points.y[i] - points.bars[i]);
+    band.upper.push_back(points.y[i] + points.bars[i]);
+  }
+  points.bars.clear();
+  panel.bands.insert(panel.bands.begin(), std::move(band));
+}
+
 /// Of points with the ends of their error bars.
 Extent extent_with_bars(const PlotCurve& points) {
   Extent extent;
@@ -292,6 +305,8 @@ Panel upper_panel(const Compared& compared, const std::string& title) {
     }
   }
   label_bands(panel.bands, "± 2<i>u</i> of the run", "above");
+  for (PlotCurve& curve : panel.curves)
+    if (curve.bars.size() > many_points) shade_bars(panel, curve);
   panel.y.range = ordinate_range(extents);
   panel.notes = notes_on_runs(compared.members, [&](const Member& m) { return !compared.curve(m); });
   return panel;
@@ -433,8 +448,8 @@ std::string fitted(const std::string& label, const std::string& brief, double wi
 void fit_labels(Plot& plot) {
   for (Panel& panel : plot.panels)
     for (PlotCurve& curve : panel.curves)
-      if (!curve.label.empty() && !curve.bars.empty())
-        curve.label = fitted(curve.label, "measured ± 2<i>u</i>", plot.width, panel.notes);
+      if (curve.label.starts_with("measured"))
+        curve.label = fitted(curve.label, "measured", plot.width, panel.notes);
 }
 
 // ---- pairs
@@ -503,8 +518,7 @@ std::string brief_label_of(const vv::PairsVerdict& pairs) {
   return escaped(pairs.title.empty() ? spaced(pairs.id) : pairs.title);
 }
 
-/// Room on a logarithmic axis on either side, and never less than a decade and a half in all: then a power of
-/// ten and its neighbours are labelled.
+/// The extent with room on either side, on a logarithmic axis whose ends have at least this ratio.
 Range logarithmic_room(const Extent& extent, double least_ratio) {
   if (extent.empty()) return {0.1, 10.0};
   const double middle = std::sqrt(extent.lower * extent.upper);
@@ -633,7 +647,16 @@ void add_guides(PairPanels& panels) {
     panels.ratio.levels.push_back({guide.ratio, "", guide.legend, guide.stroke});
     panels.ratios.include(guide.ratio);
   }
-  panels.ratio.y.range = logarithmic_room(panels.ratios, 4.0);
+  panels.ratio.y.range = logarithmic_room(panels.ratios, 1.0);
+}
+
+/// Guides that are no round ratio have their own ticks.
+void label_guides(Panel& ratio) {
+  for (const LevelLine& level : ratio.levels) {
+    const auto same = [&level](const auto& tick) { return tick.first == level.value; };
+    if (level.legend.empty() || std::any_of(ratio.y.ticks.begin(), ratio.y.ticks.end(), same)) continue;
+    ratio.y.ticks.emplace_back(level.value, fmt::format("{:g}", level.value));
+  }
 }
 
 /// The frame of a group in which nothing is predicted: the first of its notes, and the others below it.
@@ -664,6 +687,7 @@ std::vector<Panel> pair_panels(const vv::Case& definition, const PairGroup& grou
     label_plainly(panel->x);
     label_plainly(panel->y);
   }
+  label_guides(panels.ratio);
   return {panels.both, panels.ratio};
 }
 

@@ -112,6 +112,23 @@ TEST(ComparisonFigure, PointsNoRunReachesHaveTheUncertaintyOfTheirColumn) {
   EXPECT_DOUBLE_EQ(points->x[0], 200.0);
 }
 
+TEST(ComparisonFigure, ManyPointsHaveABandInPlaceOfBars) {
+  vv::CaseVerdict verdict = support::demo_collapse();
+  verdict.definition.measurements[0].file = support::demo::surface_file(61);
+  for (vv::RunVerdict& run : verdict.runs)
+    run.comparisons[0] =
+        support::demo::comparison(verdict.definition.measurements[0], 1.0, vv::Agreement::validated);
+  const Panel above = plot_of(verdict, surfaces(verdict, "final_surface", "cpgimp")).panels[0];
+  const PlotCurve* points = curve(above, "measured ± 2<i>u</i>, reading only, shaded [Demo00, Figure 3]");
+  ASSERT_TRUE(points);
+  EXPECT_TRUE(points->bars.empty());
+  ASSERT_EQ(above.bands.size(), 2U);
+  EXPECT_TRUE(above.bands[0].label.empty()) << "the points say what it is";
+  EXPECT_DOUBLE_EQ(above.bands[0].upper[7],
+                   points->y[7] + 2e3 * verdict.runs[0].comparisons[0].u_measured[7]);
+  EXPECT_GE(above.y.range.upper, above.bands[0].upper[0]);
+}
+
 TEST(ComparisonFigure, HasTheRunsWholeCurvesWithTheirOwnUncertainty) {
   const vv::CaseVerdict verdict = support::demo_collapse();
   const Panel above = plot_of(verdict, surfaces(verdict, "final_surface", "ugimp")).panels[0];
@@ -390,6 +407,9 @@ TEST(PairsFigure, HasGuidesThatSuitTheRatios) {
   figure = pairs(verdict);
   EXPECT_FALSE(curve(figure.panels[0], "factor of 2"));
   EXPECT_TRUE(curve(figure.panels[0], "± 20 %")) << "no ratio is farther off than 1.5";
+  const auto& ticks = figure.panels[1].y.ticks;
+  EXPECT_TRUE(std::find(ticks.begin(), ticks.end(), std::pair<double, std::string>(0.8, "0.8")) !=
+              ticks.end());
 }
 
 TEST(PairsFigure, NamesWhatWasNotPredictedAndCountsWhatIsNotPositive) {
