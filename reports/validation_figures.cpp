@@ -231,13 +231,13 @@ Band own_band(const Compared& compared, const Member& member) {
   return largest > 0.0 ? band : Band{};
 }
 
-/// The label of bands: on the only one, or on a grey sample of several in their own colours.
+/// The label of bands: on the only one, or on a grey sample of several in the colours of their runs.
 void label_bands(std::vector<Band>& bands, const std::string& label, const std::string& place) {
   if (bands.empty()) return;
   if (bands.size() == 1)
     bands.front().label = label;
   else
-    bands.push_back({"shaded " + place + ": " + label, uncertainty_color, {}, {}, {}});
+    bands.push_back({label + " in its colour, " + place, uncertainty_color, {}, {}, {}});
 }
 
 void include_band(Extent& extent, const Band& band) {
@@ -304,7 +304,7 @@ Panel upper_panel(const Compared& compared, const std::string& title) {
       panel.bands.push_back(std::move(band));
     }
   }
-  label_bands(panel.bands, "± 2<i>u</i> of the run", "above");
+  label_bands(panel.bands, "± 2<i>u</i> of a run", "above");
   for (PlotCurve& curve : panel.curves)
     if (curve.bars.size() > many_points) shade_bars(panel, curve);
   panel.y.range = ordinate_range(extents);
@@ -414,7 +414,7 @@ Panel lower_panel(const Compared& compared, const Range& abscissae) {
     panel.curves.push_back(std::move(line));
     panel.bands.push_back(std::move(band));
   }
-  label_bands(panel.bands, "± 2<i>u</i><sub>val</sub>", "below");
+  label_bands(panel.bands, "± 2<i>u</i><sub>val</sub> of a run", "below");
   panel.y.range = tame_extent(extents).widened(0.1);
   panel.notes = words_below(compared);
   return panel;

@@ -141,7 +141,7 @@ TEST(ComparisonFigure, HasTheRunsWholeCurvesWithTheirOwnUncertainty) {
   EXPECT_GT(above.x.range.lower, 150.0);
   EXPECT_NEAR(run->y.front(), 1.12e3 * support::demo::surface(above.x.range.lower * 1e-3), 0.02);
   EXPECT_GT(run->x.size(), 50U);
-  const Band* own = band(above, "± 2<i>u</i> of the run");
+  const Band* own = band(above, "± 2<i>u</i> of a run");
   ASSERT_TRUE(own);
   const vv::CurveComparison& c = verdict.runs[0].comparisons[0];
   ASSERT_EQ(own->x.size(), c.abscissa.size());
@@ -166,7 +166,7 @@ TEST(ComparisonFigure, HasTheDifferenceBelowAndTheVerdict) {
   ASSERT_EQ(difference->y.size(), c.abscissa.size());
   for (std::size_t i = 0; i < c.abscissa.size(); ++i)
     EXPECT_NEAR(difference->y[i], (c.simulated[i] - c.measured[i]) * 1e3, 1e-9);
-  const Band* uncertainty = band(below, "± 2<i>u</i><sub>val</sub>");
+  const Band* uncertainty = band(below, "± 2<i>u</i><sub>val</sub> of a run");
   ASSERT_TRUE(uncertainty);
   EXPECT_EQ(uncertainty->color.red, uncertainty->color.blue) << "grey beside one run";
   EXPECT_DOUBLE_EQ(uncertainty->upper[5], 2e3 * c.u_validation[5]);
@@ -187,7 +187,7 @@ TEST(ComparisonFigure, TellsSeveralRunsApart) {
   EXPECT_EQ(below.bands[0].color.blue, curve(below, "uGIMP")->look.color.blue);
   EXPECT_EQ(below.bands[1].color.blue, curve(below, "cpGIMP")->look.color.blue);
   EXPECT_TRUE(below.bands[2].x.empty()) << "a sample for the legend";
-  EXPECT_EQ(below.bands[2].label, "shaded below: ± 2<i>u</i><sub>val</sub>");
+  EXPECT_EQ(below.bands[2].label, "± 2<i>u</i><sub>val</sub> of a run in its colour, below");
   EXPECT_TRUE(mention(below.notes, "uGIMP, model error detected: 71 %"));
   EXPECT_TRUE(mention(below.notes, "cpGIMP, validated at this level: 100 %"));
   EXPECT_FALSE(mention({below.notes.at(1)}, "excess"));
@@ -264,6 +264,9 @@ TEST(ComparisonFigure, AWildRunDoesNotStretchTheAxes) {
   EXPECT_DOUBLE_EQ(after.panels[0].y.range.upper, before.panels[0].y.range.upper);
   EXPECT_DOUBLE_EQ(after.panels[1].y.range.upper, before.panels[1].y.range.upper);
   EXPECT_GT(draw(after).layout.panels[1].outside, 10);
+  for (double& x : verdict.runs[1].curves[0].x) x *= 1e4;
+  const Plot slot = plot_of(verdict, surfaces(verdict, "other_surface"));
+  EXPECT_LT(slot.panels[0].x.range.upper, 600.0) << "the tame run's places";
 }
 
 TEST(ComparisonFigure, StandsInPairsSideBySide) {
@@ -419,6 +422,9 @@ TEST(PairsFigure, NamesWhatWasNotPredictedAndCountsWhatIsNotPositive) {
   EXPECT_TRUE(
       mention(figure.panels[0].notes, "Not predicted, exact factors: test 12: no depth is &lt;known&gt;"));
   EXPECT_TRUE(mention(figure.panels[0].notes, "Not positive and not drawn, fitted factors: 1"));
+  ASSERT_EQ(figure.panels[0].curves.at(1).x.size(), 11U);
+  EXPECT_EQ(figure.panels[1].curves.size(), 4U) << "marks of two pairs, and a bias of either";
+  EXPECT_GT(figure.panels[1].y.range.lower, 0.0);
   EXPECT_TRUE(mention(figure.panels[0].notes, "95 % confidence"));
   EXPECT_NO_THROW(draw(figure));
 }
