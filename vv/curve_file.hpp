@@ -73,8 +73,7 @@ std::string hash_of_values(const nlohmann::ordered_json& curve_file);
 /// known.
 std::string dimension_of_unit(const std::string& unit);
 
-/// How much one of a unit of a curve file is in SI (an angle in degrees): 1e-3 of "mm", 1e3 of "kPa", 1 of "1";
-/// 1 if it is not known.
+/// One of a unit that is known, in SI units: 0.001 for "mm".
 double si_of_unit(const std::string& unit);
 
 /// Directory of the curve files that come with the program.
