@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "reports/framed_note.hpp"
+#include "reports/legend.hpp"
 #include "reports/typography.hpp"
 
 namespace mpm::reports {
@@ -22,18 +24,16 @@ constexpr double bar_thickness = 9.0;
 constexpr double bar_arrow = 8.0;
 constexpr double outward_tick = 2.8;
 constexpr double color_bar_height = bar_thickness + tick_gap + 2 * line_height + 6.0;
-constexpr double edge_room = 6.0;  // right of the last frame, for half a tick label
-constexpr double note_margin = 6.0;
+constexpr double edge_room = 6.0;     // right of the last frame, for half a tick label
 constexpr double view_margin = 0.02;  // of the larger side, around what must be seen
 constexpr double overlap = 0.12;      // of a particle on every side: gaps narrower than a pixel do not show
-constexpr double readable_frame = 110.0;  // wide enough for what a field shows
-constexpr double axis_label_gap = 6.0;    // between tick labels and the label of the vertical axis
-constexpr double hatch_pitch = 6.0;       // of a frame that cannot be filled
+constexpr double readable_frame = 110.0;     // wide enough for what a field shows
+constexpr double axis_label_gap = 6.0;       // between tick labels and the label of the vertical axis
+constexpr double legend_sample_room = 47.0;  // of a line beside its label, and what parts entries
+constexpr double line_border = 0.9;          // white, on either side of a line over particles
 constexpr int bar_slices = 256;
 
 const Color frame_color{0.45, 0.45, 0.45, 1.0};
-const Color hatch_color{0.84, 0.84, 0.84, 1.0};
-const Color empty_color{0.96, 0.96, 0.96, 1.0};
 
 /// What is seen [m].
 struct View {
@@ -197,6 +197,24 @@ void draw_particles(Canvas& canvas, const Frame& frame, const vv::FieldMap& map,
   canvas.unclip();
 }
 
+/// A line over the particles, on a white border so that no colour hides it.
+void draw_line(Canvas& canvas, const Frame& frame, const FieldLine& line) {
+  std::vector<Point> path;
+  for (std::size_t i = 0; i < std::min(line.x.size(), line.y.size()); ++i)
+    path.push_back(frame.at(line.x[i], line.y[i]));
+  canvas.clip(frame.box);
+  canvas.line(path, {white, line.look.line_width + 2 * line_border, {}});
+  canvas.line(path, {line.look.color, line.look.line_width, line.look.dash});
+  // Marks that touch would hide the line.
+  std::optional<Point> last;
+  for (const Point& place : path) {
+    if (last && std::hypot(place.x - last->x, place.y - last->y) < 2.5 * line.look.marker_size) continue;
+    canvas.marker(place, marker_of(line.look));
+    last = place;
+  }
+  canvas.unclip();
+}
+
 void draw_box(Canvas& canvas, const Rectangle& r, const Color& color) {
   canvas.rule({r.left, r.top}, {r.right, r.top}, axis_width, color);
   canvas.rule({r.left, r.bottom}, {r.right, r.bottom}, axis_width, color);
@@ -229,39 +247,6 @@ void draw_axes(Canvas& canvas, const Frame& frame, int row_ticks, bool x_labels,
   upward.upward = true;
   canvas.text({box.left - outward_tick - 2.0 - widest(rows) - axis_label_gap, (box.top + box.bottom) / 2},
               fmt::format("<i>y</i> [{}]", unit.name), upward);
-}
-
-TextStyle frame_note_style(const Rectangle& box) {
-  TextStyle style = text_style(Horizontal::center, Vertical::top, type_size, muted);
-  style.wrap_width = box.width() - 2 * note_margin;
-  return style;
-}
-
-bool fits_in_frame(const Rectangle& box, const std::string& note) {
-  const TextExtent extent = Canvas::measure(note, frame_note_style(box));
-  return extent.height() <= box.height() - 2 * note_margin && extent.width <= box.width() - note_margin;
-}
-
-/// The note in the middle of the frame.
-void write_in_frame(Canvas& canvas, const Rectangle& box, const std::string& note, bool hatched,
-                    Layout::Panel& layout) {
-  const TextStyle style = frame_note_style(box);
-  const TextExtent extent = Canvas::measure(note, style);
-  const Point middle = box.center();
-  const double half_width = extent.width / 2, half_height = extent.height() / 2;
-  canvas.rectangle(box, hatched ? white : empty_color);
-  if (hatched) {
-    canvas.clip(box);
-    for (double x = box.left - box.height(); x < box.right; x += hatch_pitch)
-      canvas.line({{x, box.bottom}, {x + box.height(), box.top}}, {hatch_color, 0.6, {}});
-    canvas.unclip();
-    canvas.rectangle({middle.x - half_width - 4.0, middle.y - half_height - 2.0, middle.x + half_width + 4.0,
-                      middle.y + half_height + 2.0},
-                     white);
-  }
-  canvas.text({middle.x, middle.y - half_height}, note, style);
-  layout.annotations.push_back(
-      {middle.x - half_width, middle.y - half_height, middle.x + half_width, middle.y + half_height});
 }
 
 // ---- the colour bar
@@ -318,7 +303,8 @@ struct Sheet {
   std::vector<std::string> frame_notes;          ///< as it stands in the frame, one a panel
   std::vector<std::string> notes;                ///< under the picture
   double width = 0.0, left = 0.0, middle = 0.0;  ///< left and middle of the frames
-  double bar_top = 0.0, notes_top = 0.0, height = 0.0;
+  double bar_top = 0.0, legend_top = 0.0, notes_top = 0.0, height = 0.0;
+  LegendRows legend;
   bool has_bar = false;
 };
 
@@ -372,6 +358,25 @@ void note_unseen_particles(Sheet& sheet, const FieldPlot& plot) {
                     not_finite, all));
 }
 
+/// The lines by name. A label that has no room stands in a note, what is before its colon in the legend.
+LegendRows legend_of(const FieldPlot& plot, double width, std::vector<std::string>& notes) {
+  std::vector<LegendEntry> entries;
+  const double room = width - 2 * outer_margin;
+  const auto add = [&](const FieldLine& line) {
+    LegendEntry entry{LegendEntry::Kind::curve, line.label, line.look, {}};
+    if (text_width(line.label) + legend_sample_room > room) {
+      if (std::find(notes.begin(), notes.end(), line.label) != notes.end()) return;
+      notes.push_back(line.label);
+      entry.label = line.label.substr(0, line.label.find(':'));
+    }
+    add_entry(entries, std::move(entry));
+  };
+  for (const FieldPanel& panel : plot.panels)
+    for (const FieldLine& line : panel.lines) add(line);
+  for (const FieldLine& line : plot.absent_lines) add(line);
+  return legend_rows(entries, room);
+}
+
 double note_height(const std::string& note, double width) {
   return Canvas::measure(note, note_style(width - 2 * outer_margin)).height() + 1.0;
 }
@@ -390,7 +395,9 @@ Sheet placed(const FieldPlot& plot) {
   place_frame_notes(sheet, plot);
   sheet.notes.insert(sheet.notes.end(), plot.notes.begin(), plot.notes.end());
   note_unseen_particles(sheet, plot);
-  sheet.notes_top = sheet.bar_top + (sheet.has_bar ? color_bar_height : 0.0);
+  sheet.legend = legend_of(plot, sheet.width, sheet.notes);
+  sheet.legend_top = sheet.bar_top + (sheet.has_bar ? color_bar_height : 0.0);
+  sheet.notes_top = sheet.legend_top + (sheet.legend.empty() ? 0.0 : legend_height(sheet.legend) + 3.0);
   sheet.height = sheet.notes_top + 3.0;
   for (const std::string& note : sheet.notes) sheet.height += note_height(note, sheet.width);
   if (!plot.stamp.empty()) sheet.height += stamp_size + 7.0;
@@ -416,7 +423,9 @@ Layout::Panel draw_panel(Canvas& canvas, const Sheet& sheet, const FieldPlot& pl
   if (panel.map)
     draw_particles(canvas, frame, *panel.map, plot.scale, layout);
   else
-    write_in_frame(canvas, frame.box, sheet.frame_notes[number], panel.hatched, layout);
+    layout.annotations.push_back(write_in_frame(canvas, frame.box, sheet.frame_notes[number], panel.hatched));
+  if (panel.map)
+    for (const FieldLine& line : panel.lines) draw_line(canvas, frame, line);
   draw_box(canvas, frame.box, frame_color);
   draw_axes(canvas, frame, grid.row_ticks, number + grid.columns >= plot.panels.size(),
             number % grid.columns == 0);
@@ -449,6 +458,7 @@ Picture draw(const FieldPlot& plot, double pixels_per_point) {
     picture.layout.panels.push_back(draw_panel(canvas, sheet, plot, i));
   draw_heads(canvas, sheet, plot.heads);
   if (sheet.has_bar) picture.layout.legend = draw_color_bar(canvas, plot.scale, sheet.middle, sheet.bar_top);
+  if (!sheet.legend.empty()) draw_legend(canvas, sheet.legend, sheet.legend_top);
   double top = sheet.notes_top;
   for (const std::string& note : sheet.notes) {
     canvas.text({outer_margin, top}, note, note_style(sheet.width - 2 * outer_margin));

@@ -56,6 +56,7 @@ std::string orders_markup(const std::vector<double>& orders);
 ///   with three phases or more, those of the first and the second bend.
 /// - A measurement that is not to be had is named in the legend, and has no curve.
 /// - Runs that did not complete or lack a curve are named in a note under their panel.
+/// - Kinds comparison, pairs and trend: see reports/validation_figures.hpp.
 ///
 /// Throws std::invalid_argument for a kind it does not know.
 Plot plot_of(const vv::CaseVerdict& verdict, const vv::FigureRequest& request);
@@ -64,6 +65,7 @@ Plot plot_of(const vv::CaseVerdict& verdict, const vv::FigureRequest& request);
 /// at which runs were kept, or for every one the request chooses.
 ///
 /// - A measurement that is not to be had has a row of hatched frames, or one frame beside the others.
+/// - Measured curves are drawn as `add_measured_lines` says.
 /// - The view is the request's, or covers all particles of the runs that completed; without any, of all.
 ///   Should a few particles have flown so far that all others would shrink by a third or more, the outermost
 ///   0.1 % are left out and counted.

@@ -14,7 +14,7 @@ constexpr double legend_row = 14.0;
 /// Room for the sample of line, bar or marker in front of a label.
 double sample_width(const LegendEntry& entry) {
   using Kind = LegendEntry::Kind;
-  if (entry.kind == Kind::bar || entry.kind == Kind::whisker) return 18.0;
+  if (entry.kind == Kind::bar || entry.kind == Kind::band || entry.kind == Kind::whisker) return 18.0;
   if (entry.kind == Kind::tick) return 8.0;
   return entry.kind == Kind::curve && entry.look.line_width <= 0.0 ? 8.0 : 24.0;
 }
@@ -31,6 +31,8 @@ void draw_sample(Canvas& canvas, const LegendEntry& entry, double left, double m
     canvas.line({{(left + right) / 2, middle - 5.0}, {(left + right) / 2, middle + 5.0}}, entry.stroke);
   } else if (entry.kind == Kind::whisker) {
     draw_whisker(canvas, left, right, middle, 5.0, entry.stroke);
+  } else if (entry.kind == Kind::band) {
+    canvas.rectangle({left, middle - 4.0, right, middle + 4.0}, entry.look.color);
   } else if (entry.kind == Kind::bar) {
     const Rectangle box{left, middle - 4.0, right, middle + 4.0};
     fill_bar(canvas, box, entry.look, sheet);
@@ -39,7 +41,10 @@ void draw_sample(Canvas& canvas, const LegendEntry& entry, double left, double m
     if (entry.look.line_width > 0.0)
       canvas.line({{left, middle}, {right, middle}},
                   {entry.look.color, entry.look.line_width, entry.look.dash});
-    canvas.marker({(left + right) / 2, middle}, marker_of(entry.look));
+    const double center = (left + right) / 2;
+    if (entry.bars)
+      canvas.line({{center, middle - 5.5}, {center, middle + 5.5}}, {entry.look.color, bar_width, {}});
+    canvas.marker({center, middle}, marker_of(entry.look));
   }
 }
 

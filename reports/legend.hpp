@@ -12,13 +12,15 @@ struct LegendEntry {
   enum class Kind {
     curve,
     bar,
+    band,  ///< a patch in the look's colour
     level,
     tick,    ///< an upright mark across a bar
     whisker  ///< a level error bar
   } kind = Kind::curve;
   std::string label;  ///< markup
-  Look look;          ///< of a curve or a bar
+  Look look;          ///< of a curve, a bar or a band
   Stroke stroke;      ///< of everything else
+  bool bars = false;  ///< whether a curve's sample has an upright error bar
 };
 
 using LegendRows = std::vector<std::vector<LegendEntry>>;

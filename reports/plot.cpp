@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 
+#include "reports/framed_note.hpp"
 #include "reports/legend.hpp"
 #include "reports/typography.hpp"
 
@@ -18,6 +19,7 @@ constexpr double minor_tick = 2.2;
 constexpr double column_gap = 16.0;
 constexpr double row_gap = 13.0;
 constexpr double edge_mark = 5.0;
+constexpr double bar_cap = 4.0;  // of an error bar, its whole width
 
 const Color grid_color{0.905, 0.905, 0.905, 1.0};
 
@@ -53,7 +55,10 @@ ReadyAxis ready(const Axis& axis, int wanted) {
     for (const double t : ticks.major) result.labels.emplace_back(t, log_label(t));
     result.minor = ticks.minor;
   } else {
-    const Ticks ticks = linear_ticks(axis.range, wanted);
+    Ticks ticks = linear_ticks(axis.range, wanted);
+    // Zero alone between two ends tells nothing of how far they are.
+    for (int more = wanted + 1; ticks.major.size() < 2 && more < 2 * wanted + 2; ++more)
+      ticks = linear_ticks(axis.range, more);
     const double largest = std::max(std::abs(axis.range.lower), std::abs(axis.range.upper));
     const double step = ticks.major.size() > 1 ? ticks.major[1] - ticks.major[0] : largest;
     int exponent = 0;
@@ -137,6 +142,7 @@ struct Placed {
   const Panel* panel = nullptr;
   ReadyAxis x, y;
   std::vector<std::string> notes;
+  std::string absence;  ///< as it stands in the frame
   double left_room = 0.0, right_room = 0.0, top_room = 0.0, bottom_room = 0.0;
   double notes_height = 0.0;
   Rectangle frame;
@@ -162,12 +168,18 @@ bool labels_fit(const ReadyAxis& axis, double length) {
 Placed measured(const Panel& panel, double frame_guess, double aspect) {
   Placed placed;
   placed.panel = &panel;
+  if (!panel.absence.empty()) {
+    placed.absence = panel.absence;
+    placed.notes = panel.notes;
+    placed.top_room = 17.0;
+    return placed;
+  }
   const Axis x_axis = panel.groups.empty() ? panel.x : group_axis(panel);
   for (int wanted = 6; wanted >= 2; --wanted) {
     placed.x = ready(x_axis, wanted);
     if (labels_fit(placed.x, frame_guess)) break;
   }
-  placed.y = ready(panel.y, std::clamp(static_cast<int>(frame_guess * aspect / 24.0), 3, 7));
+  placed.y = ready(panel.y, std::clamp(static_cast<int>(frame_guess * aspect * panel.height / 24.0), 3, 7));
   placed.notes = panel.notes;
   for (std::string& note : notes_on_missing_points(panel)) placed.notes.push_back(std::move(note));
   for (std::string& note : notes_on_cut_bars(panel)) placed.notes.push_back(std::move(note));
@@ -178,6 +190,13 @@ Placed measured(const Panel& panel, double frame_guess, double aspect) {
   placed.top_room = 17.0;
   placed.bottom_room = tick_gap + line_height + (panel.x.label.empty() ? 0.0 : line_height + 2.0);
   return placed;
+}
+
+/// What does not fit in a frame of this size is said below it.
+void move_long_absence(Placed& placed, const Rectangle& frame) {
+  if (placed.absence.empty() || fits_in_frame(frame, placed.absence)) return;
+  placed.notes.insert(placed.notes.begin(), placed.absence);
+  placed.absence = "see below";
 }
 
 double notes_height(const std::vector<std::string>& notes, double width) {
@@ -193,10 +212,17 @@ std::vector<LegendEntry> legend_of(const Plot& plot) {
   std::vector<LegendEntry> entries;
   const auto add = [&entries](LegendEntry entry) { add_entry(entries, std::move(entry)); };
   for (const Panel& panel : plot.panels) {
-    for (const PlotCurve& curve : panel.curves) add({LegendEntry::Kind::curve, curve.label, curve.look, {}});
+    for (const PlotCurve& curve : panel.curves)
+      add({LegendEntry::Kind::curve, curve.label, curve.look, {}, !curve.bars.empty()});
     for (const BarSeries& series : panel.bar_series)
       add({LegendEntry::Kind::bar, series.label, series.look, {}});
   }
+  for (const Panel& panel : plot.panels)
+    for (const Band& band : panel.bands) {
+      Look look;
+      look.color = band.color;
+      add({LegendEntry::Kind::band, band.label, look, {}});
+    }
   for (const Panel& panel : plot.panels)
     for (const LevelLine& level : panel.levels)
       add({LegendEntry::Kind::level, level.legend, {}, level.stroke});
@@ -295,15 +321,50 @@ void draw_edge_mark(Canvas& canvas, Point at, Point truth, const Rectangle& f, c
                  color);
 }
 
+/// Where a point stands. Zero on a logarithmic axis lies infinitely far out: it is brought within reach of
+/// the line's clipping.
+Point reachable(const Placed& placed, double x, double y) {
+  const Point place = placed.at(x, y);
+  if (!std::isfinite(x) || !std::isfinite(y)) return place;
+  return {std::clamp(place.x, -1e7, 1e7), std::clamp(place.y, -1e7, 1e7)};
+}
+
+/// A band as one piece between each two abscissae; pieces share their edges exactly.
+void draw_band(Canvas& canvas, const Placed& placed, const Band& band) {
+  const std::size_t count = std::min({band.x.size(), band.lower.size(), band.upper.size()});
+  canvas.clip(placed.frame);
+  for (std::size_t i = 0; i + 1 < count; ++i) {
+    const std::vector<Point> corners{
+        reachable(placed, band.x[i], band.lower[i]), reachable(placed, band.x[i + 1], band.lower[i + 1]),
+        reachable(placed, band.x[i + 1], band.upper[i + 1]), reachable(placed, band.x[i], band.upper[i])};
+    const bool whole = std::all_of(corners.begin(), corners.end(),
+                                   [](Point p) { return std::isfinite(p.x) && std::isfinite(p.y); });
+    if (whole) canvas.polygon(corners, band.color);
+  }
+  canvas.unclip();
+}
+
+/// Upright bars with a cap at either end, cut at the frame.
+void draw_error_bars(Canvas& canvas, const Placed& placed, const PlotCurve& curve) {
+  const std::size_t count = std::min({curve.x.size(), curve.y.size(), curve.bars.size()});
+  const Stroke stroke{curve.look.color, bar_width, {}};
+  canvas.clip(placed.frame);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Point low = reachable(placed, curve.x[i], curve.y[i] - curve.bars[i]),
+                high = reachable(placed, curve.x[i], curve.y[i] + curve.bars[i]);
+    if (!std::isfinite(low.x + low.y + high.y) || !(curve.bars[i] > 0.0)) continue;
+    canvas.line({low, high}, stroke);
+    for (const double y : {low.y, high.y})
+      canvas.line({{low.x - bar_cap / 2, y}, {low.x + bar_cap / 2, y}}, stroke);
+  }
+  canvas.unclip();
+}
+
 void draw_curve(Canvas& canvas, const Placed& placed, const PlotCurve& curve, Layout::Panel& layout) {
   const std::size_t count = std::min(curve.x.size(), curve.y.size());
   std::vector<Point> path(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    path[i] = placed.at(curve.x[i], curve.y[i]);
-    // Zero on a logarithmic axis lies infinitely far out: bring it within reach of the line's clipping.
-    if (std::isfinite(curve.x[i]) && std::isfinite(curve.y[i]))
-      path[i] = {std::clamp(path[i].x, -1e7, 1e7), std::clamp(path[i].y, -1e7, 1e7)};
-  }
+  for (std::size_t i = 0; i < count; ++i) path[i] = reachable(placed, curve.x[i], curve.y[i]);
+  draw_error_bars(canvas, placed, curve);
   canvas.clip(placed.frame);
   if (curve.look.line_width > 0.0)
     canvas.line(path, {curve.look.color, curve.look.line_width, curve.look.dash});
@@ -494,11 +555,25 @@ void draw_notes(Canvas& canvas, const Placed& placed, double left, double width)
   }
 }
 
+void write_title(Canvas& canvas, const Placed& placed, std::size_t number, bool tagged) {
+  const std::string tag = tagged ? fmt::format("<b>({})</b> ", static_cast<char>('a' + number % 26)) : "";
+  canvas.text({placed.frame.left, placed.frame.top - 6.5}, tag + placed.panel->title,
+              text_style(Horizontal::left, Vertical::baseline, title_size));
+}
+
 Layout::Panel draw_panel(Canvas& canvas, const Placed& placed, std::size_t number, bool tagged,
                          double notes_left, double notes_width) {
   Layout::Panel layout;
   layout.frame = placed.frame;
+  write_title(canvas, placed, number, tagged);
+  draw_notes(canvas, placed, notes_left, notes_width);
+  if (!placed.panel->absence.empty()) {
+    layout.annotations.push_back(write_in_frame(canvas, placed.frame, placed.absence, placed.panel->hatched));
+    draw_frame(canvas, placed.frame);
+    return layout;
+  }
   draw_grid(canvas, placed);
+  for (const Band& band : placed.panel->bands) draw_band(canvas, placed, band);
   if (!placed.panel->groups.empty()) draw_bars(canvas, placed, false, layout);
   draw_levels(canvas, placed);
   if (!placed.panel->groups.empty()) draw_bars(canvas, placed, true, layout);
@@ -514,10 +589,6 @@ Layout::Panel draw_panel(Canvas& canvas, const Placed& placed, std::size_t numbe
     const std::vector<Point> covered = covered_places(placed, layout);
     draw_slopes(canvas, placed, placed.panel->reference_slopes, covered, layout);
   }
-  const std::string tag = tagged ? fmt::format("<b>({})</b> ", static_cast<char>('a' + number % 26)) : "";
-  canvas.text({placed.frame.left, placed.frame.top - 6.5}, tag + placed.panel->title,
-              text_style(Horizontal::left, Vertical::baseline, title_size));
-  draw_notes(canvas, placed, notes_left, notes_width);
   return layout;
 }
 
@@ -619,16 +690,23 @@ Look look_of_series(int n) {
 
 Picture draw(const Plot& plot, double pixels_per_point) {
   const std::size_t columns = static_cast<std::size_t>(std::max(1, plot.columns));
-  const std::size_t rows = (plot.panels.size() + columns - 1) / columns;
+  const std::size_t stack = static_cast<std::size_t>(std::max(1, plot.stack));
   const double guess = (plot.width - 2 * outer_margin) / static_cast<double>(columns) - 45.0;
   std::vector<Placed> placed;
   for (const Panel& panel : plot.panels) placed.push_back(measured(panel, guess, plot.frame_aspect));
+  const auto column_of = [&](std::size_t i) { return i / stack % columns; };
+  std::vector<std::vector<std::size_t>> rows;
+  for (std::size_t i = 0; i < placed.size(); ++i) {
+    const std::size_t row = i / (stack * columns) * stack + i % stack;
+    rows.resize(std::max(rows.size(), row + 1));
+    rows[row].push_back(i);
+  }
 
   // All frames are equally wide; a column has the room its widest labels need.
   std::vector<double> left(columns, 0.0), right(columns, 0.0);
   for (std::size_t i = 0; i < placed.size(); ++i) {
-    left[i % columns] = std::max(left[i % columns], placed[i].left_room);
-    right[i % columns] = std::max(right[i % columns], placed[i].right_room);
+    left[column_of(i)] = std::max(left[column_of(i)], placed[i].left_room);
+    right[column_of(i)] = std::max(right[column_of(i)], placed[i].right_room);
   }
   double free_width = plot.width - 2 * outer_margin - column_gap * (static_cast<double>(columns) - 1.0);
   for (std::size_t c = 0; c < columns; ++c) free_width -= left[c] + right[c];
@@ -636,20 +714,23 @@ Picture draw(const Plot& plot, double pixels_per_point) {
   const double frame_height = frame_width * plot.frame_aspect;
 
   double top = outer_margin;
-  for (std::size_t r = 0; r < rows; ++r) {
-    double x = outer_margin, tallest_notes = 0.0, above = 0.0, below = 0.0;
-    for (std::size_t i = r * columns; i < std::min(placed.size(), (r + 1) * columns); ++i) {
+  for (const std::vector<std::size_t>& row : rows) {
+    double x = outer_margin, tallest_notes = 0.0, above = 0.0, below = 0.0, tallest = 0.0;
+    for (const std::size_t i : row) {
       above = std::max(above, placed[i].top_room);
       below = std::max(below, placed[i].bottom_room);
-      placed[i].notes_height = notes_height(placed[i].notes, left[i % columns] + frame_width);
+      tallest = std::max(tallest, placed[i].panel->height * frame_height);
+      move_long_absence(placed[i], {0.0, 0.0, frame_width, placed[i].panel->height * frame_height});
+      placed[i].notes_height = notes_height(placed[i].notes, left[column_of(i)] + frame_width);
       tallest_notes = std::max(tallest_notes, placed[i].notes_height);
     }
-    for (std::size_t c = 0; c < columns && r * columns + c < placed.size(); ++c) {
-      Placed& p = placed[r * columns + c];
-      p.frame = {x + left[c], top + above, x + left[c] + frame_width, top + above + frame_height};
+    for (const std::size_t i : row) {
+      const std::size_t c = column_of(i);
+      placed[i].frame = {x + left[c], top + above, x + left[c] + frame_width,
+                         top + above + placed[i].panel->height * frame_height};
       x += left[c] + frame_width + right[c] + column_gap;
     }
-    top += above + frame_height + below + tallest_notes + row_gap;
+    top += above + tallest + below + tallest_notes + row_gap;
   }
   const auto legend = legend_rows(legend_of(plot), plot.width - 2 * outer_margin);
   const double legend_top = top - 4.0;
@@ -659,8 +740,8 @@ Picture draw(const Plot& plot, double pixels_per_point) {
   Picture picture{Canvas(plot.width, top + 2.0, pixels_per_point), {}};
   for (std::size_t i = 0; i < placed.size(); ++i)
     picture.layout.panels.push_back(draw_panel(picture.canvas, placed[i], i, placed.size() > 1,
-                                               placed[i].frame.left - left[i % columns],
-                                               left[i % columns] + frame_width));
+                                               placed[i].frame.left - left[column_of(i)],
+                                               left[column_of(i)] + frame_width));
   if (!legend.empty()) picture.layout.legend = draw_legend(picture.canvas, legend, legend_top);
   picture.canvas.text({plot.width - outer_margin, picture.canvas.height() - 4.0}, plot.stamp,
                       text_style(Horizontal::right, Vertical::baseline, stamp_size, stamp_color));

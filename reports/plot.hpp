@@ -61,6 +61,16 @@ struct PlotCurve {
   Look look;
   std::vector<double> x, y;
   int layer = 0;  ///< curves of a higher layer are drawn over those of a lower one
+  /// Half heights of upright error bars, one a point, in the unit of y; empty draws none.
+  std::vector<double> bars = {};
+};
+
+/// What lies between two ordinates at each of ascending abscissae, in the units of the axes. A place that is
+/// not finite breaks it.
+struct Band {
+  std::string label;  ///< in the legend; may be empty
+  Color color;        ///< translucent, where bands may overlap
+  std::vector<double> x, lower, upper;
 };
 
 /// Bars side by side over one name on the x axis, one a series of `Panel::bar_series`.
@@ -92,11 +102,16 @@ struct Panel {
   std::vector<double>
       reference_slopes;  ///< orders to show as a fan of triangles, on two logarithmic axes, if there is room
   std::vector<std::string> notes;  ///< markup, set under the panel
+  std::vector<Band> bands = {};    ///< drawn under levels and curves, cut at the frame
+  double height = 1.0;             ///< of the frame, relative to what the plot's aspect makes it
+  std::string absence = {};  ///< markup; if not empty, it stands in the frame in place of axes and curves
+  bool hatched = false;      ///< the frame of an absence: nobody could have drawn one
 };
 
 struct Plot {
   std::vector<Panel> panels;
   int columns = 1;             ///< >= 1
+  int stack = 1;               ///< so many successive panels stand one below the other, and are one for the columns
   double width = 482.0;        ///< of the whole picture [pt]
   double frame_aspect = 0.75;  ///< height / width of a panel's frame
   std::string stamp;           ///< markup, small, along the lower edge
@@ -109,7 +124,7 @@ struct Layout {
     std::vector<Point> points;           ///< every drawn point and the tops of bars, edge marks included
     int outside = 0;                     ///< points that lie outside the axes, marked at the edge
     int not_finite = 0;                  ///< points that cannot be drawn at all
-    std::vector<Rectangle> annotations;  ///< drawn inside the frame beside the curves
+    std::vector<Rectangle> annotations;  ///< drawn inside the frame beside the curves, or in their place
   };
   std::vector<Panel> panels;
   Rectangle legend;  ///< empty (no area) if there is nothing to explain

@@ -12,6 +12,7 @@ inline constexpr double title_size = 9.5;
 inline constexpr double stamp_size = 6.5;
 inline constexpr double line_height = 12.0;
 inline constexpr double axis_width = 0.7;
+inline constexpr double bar_width = 0.9;  // of the line of an error bar
 inline constexpr double major_tick = 4.0;
 inline constexpr double tick_gap = 3.5;
 inline constexpr double outer_margin = 7.0;

@@ -194,7 +194,7 @@ struct ViewRequest {
 /// A picture the report draws from the verdict of the case.
 struct FigureRequest {
   std::string id;
-  std::string kind;      ///< profiles, convergence, bars, history, curves, fields, model, decomposition, pairs, trend
+  std::string kind;      ///< profiles, convergence, bars, history, curves, fields, model, decomposition, comparison, pairs, trend
   std::string caption;
   std::string panels;    ///< swept parameter that separates panels; may be empty
   std::string series;    ///< swept parameter that separates curves; may be empty
@@ -209,7 +209,7 @@ struct FigureRequest {
   std::optional<ViewRequest> view = std::nullopt;  ///< fields: the part to show; without one, all particles
   bool marks = false;                              ///< curves: whether the bends that were found are marked
   std::vector<double> stages = {};  ///< curves of pressure: settlements of note, from small to large [m]
-  std::vector<std::string> measurements = {};  ///< curves: compared; fields: drawn on top as lines. Ids of the case's
+  std::vector<std::string> measurements = {};  ///< comparison: compared; fields: drawn on top as lines. Ids of the case's
   std::vector<std::string> pairs = {};         ///< pairs: ids of the case's paired predictions
   std::string abscissa = {};                   ///< trend: the metric along x; `metrics` are along y, `over` the axis
   /// Trend: published curves drawn beside the runs.

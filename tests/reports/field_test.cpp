@@ -113,6 +113,25 @@ TEST(Field, ParticlesHaveTheirPlaceSizeAndColour) {
   expect_color(at(1, 0.0, 0.21), white);
 }
 
+TEST(Field, LinesStandOverTheParticlesOnAWhiteBorder) {
+  FieldPlot plot = two_particles();
+  Look look;
+  look.line_width = 2.0;
+  plot.panels[0].lines = {{"measured", look, {0.3, 0.7}, {0.5, 0.5}}};
+  const Picture with = draw(plot);
+  const auto pixels = with.canvas.pixels();
+  const Layout::Panel& layout = with.layout.panels[0];
+  const Point on = layout.points[0];
+  expect_color(pixel(with.canvas, pixels, on), black);
+  expect_color(pixel(with.canvas, pixels, {on.x, on.y + 1.5}), white);
+  expect_color(pixel(with.canvas, pixels, {on.x, on.y + 4.0}), color_at(ColorMap::sequential, 0.2));
+  plot.panels[0].lines.clear();
+  const double bare = draw(plot).canvas.height();
+  EXPECT_GT(with.canvas.height(), bare + 10.0) << "room for the legend";
+  plot.absent_lines = {{"no measurement", look, {}, {}}};
+  EXPECT_DOUBLE_EQ(draw(plot).canvas.height(), with.canvas.height());
+}
+
 TEST(Field, TheScaleConvertsUnits) {
   FieldPlot plot = two_particles();
   plot.scale.factor = 0.5;

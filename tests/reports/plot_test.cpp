@@ -258,5 +258,98 @@ TEST(Plot, SurvivesCurvesWithoutPoints) {
   EXPECT_NO_THROW(draw(plot).canvas.png());
 }
 
+/// How dark a place is, averaged over the colours: 0 white, 1 black.
+double darkness(const Canvas& canvas, const std::vector<unsigned char>& pixels, Point place) {
+  const auto column = static_cast<std::size_t>(place.x / canvas.width() * canvas.pixel_width());
+  const auto row = static_cast<std::size_t>(place.y / canvas.height() * canvas.pixel_height());
+  const std::size_t at = (row * static_cast<std::size_t>(canvas.pixel_width()) + column) * 3;
+  return 1.0 - (pixels[at] + pixels[at + 1] + pixels[at + 2]) / (3.0 * 255.0);
+}
+
+/// A panel from 0 to 1 along both axes with nothing in it, and a place in it.
+Plot unit_square() {
+  Plot plot;
+  plot.panels.resize(1);
+  return plot;
+}
+
+Point place_in(const Rectangle& frame, double x, double y) {
+  return {frame.left + x * frame.width(), frame.bottom - y * frame.height()};
+}
+
+TEST(Plot, BandsFillEvenlyBetweenTheirEdgesAndBreak) {
+  Plot plot = unit_square();
+  plot.panels[0].bands = {
+      {"band", {0.0, 0.0, 0.0, 0.5}, {0.05, 0.33, 0.47, nan_value, 0.7, 0.97}, std::vector<double>(6, 0.45),
+       std::vector<double>(6, 0.55)}};
+  const Picture picture = draw(plot);
+  const auto pixels = picture.canvas.pixels();
+  const Rectangle& frame = picture.layout.panels[0].frame;
+  const auto dark = [&](double x, double y) {
+    return darkness(picture.canvas, pixels, place_in(frame, x, y));
+  };
+  // Half black on white, on either side of an abscissa and at it: no seam shows.
+  for (const double x : {0.1, 0.3, 0.33, 0.36, 0.9}) EXPECT_NEAR(dark(x, 0.48), 0.5, 0.01) << x;
+  EXPECT_NEAR(dark(0.55, 0.48), 0.0, 0.01) << "what is not finite breaks it";
+  EXPECT_NEAR(dark(0.1, 0.58), 0.0, 0.01);
+  EXPECT_NEAR(dark(0.1, 0.43), 0.0, 0.01);
+  EXPECT_GT(picture.layout.legend.width(), 0.0);
+}
+
+TEST(Plot, ErrorBarsReachAsFarAsTheySay) {
+  Plot plot = unit_square();
+  Look look;
+  look.marker = MarkerShape::circle;
+  plot.panels[0].curves = {{"measured", look, {0.33, 0.73}, {0.47, 0.47}, 0, {0.25, 0.1}}};
+  const Picture picture = draw(plot);
+  const auto pixels = picture.canvas.pixels();
+  const Rectangle& frame = picture.layout.panels[0].frame;
+  const auto dark = [&](double x, double y) {
+    return darkness(picture.canvas, pixels, place_in(frame, x, y));
+  };
+  for (const double y : {0.24, 0.35, 0.63, 0.7}) EXPECT_GT(dark(0.33, y), 0.5) << y;
+  for (const double y : {0.16, 0.76}) EXPECT_LT(dark(0.33, y), 0.2) << y;
+  EXPECT_GT(dark(0.73, 0.54), 0.5);
+  EXPECT_LT(dark(0.73, 0.65), 0.2);
+  EXPECT_EQ(picture.layout.panels[0].points.size(), 2U) << "ends of bars are no points";
+}
+
+TEST(Plot, PanelsOfAStackStandOneBelowTheOther) {
+  Plot plot;
+  plot.columns = 2;
+  plot.stack = 2;
+  for (int p = 0; p < 6; ++p) plot.panels.push_back(waves(1));
+  for (const std::size_t p : {1U, 3U, 5U}) plot.panels[p].height = 0.5;
+  const Layout layout = draw(plot).layout;
+  const auto frame = [&layout](std::size_t p) { return layout.panels[p].frame; };
+  for (const std::size_t p : {0U, 2U, 4U}) {
+    EXPECT_EQ(frame(p).left, frame(p + 1).left);
+    EXPECT_GT(frame(p + 1).top, frame(p).bottom);
+    EXPECT_NEAR(frame(p + 1).height(), frame(p).height() / 2, 1e-9);
+  }
+  EXPECT_EQ(frame(0).top, frame(2).top);
+  EXPECT_EQ(frame(1).top, frame(3).top);
+  EXPECT_GT(frame(2).left, frame(0).right);
+  EXPECT_EQ(frame(4).left, frame(0).left);
+  EXPECT_GT(frame(4).top, frame(1).bottom);
+}
+
+TEST(Plot, WhatIsAbsentIsSaidInTheFrameOrBelowIt) {
+  Plot plot = unit_square();
+  plot.panels.push_back(plot.panels[0]);
+  plot.columns = 2;
+  plot.panels[0].absence = "nothing was measured";
+  const Picture brief = draw(plot);
+  ASSERT_EQ(brief.layout.panels[0].annotations.size(), 1U);
+  const Rectangle note = brief.layout.panels[0].annotations[0];
+  EXPECT_TRUE(brief.layout.panels[0].frame.contains({note.left, note.top}));
+  EXPECT_TRUE(brief.layout.panels[0].frame.contains({note.right, note.bottom}));
+  EXPECT_TRUE(brief.layout.panels[1].annotations.empty());
+  for (int k = 0; k < 8; ++k) plot.panels[0].absence += plot.panels[0].absence.substr(0, 200);
+  const Picture lengthy = draw(plot);
+  EXPECT_GT(lengthy.canvas.height(), brief.canvas.height() + 50.0);
+  EXPECT_LT(lengthy.layout.panels[0].annotations.at(0).width(), note.width()) << "only where to look";
+}
+
 }  // namespace
 }  // namespace mpm::reports
