@@ -144,6 +144,7 @@ expect_code 0
 expect_in out "program in $place/else where of $checkout"
 printf '<%s>\n' run 'my case.json' '*' '' --out "it's" >"$place/expected"
 sed 1d "$place/out" | cmp -s - "$place/expected" || wrong 'the arguments are not the same'
+open_door digitise fig.png --series 'a=#d62728'; expect_code 0; expect_in out '<a=#d62728>'
 
 about="the program's exit code is the front door's"
 for verdict in 0 1 2; do

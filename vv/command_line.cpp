@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "vv/campaign.hpp"
+#include "vv/digitise_command.hpp"
 #include "vv/machine.hpp"
 #include "vv/revision.hpp"
 
@@ -318,6 +319,7 @@ struct CommandLine {
       "curves", "Check files of measured curves and show them, one line each; without any, those shipped");
   CLI::App* run = app.add_subcommand("run", "Run cases and judge them");
   CLI::App* report = app.add_subcommand("report", "Run and judge every shipped case and write the report");
+  DigitiseCommand digitise{app};
   CLI::App* check_performance =
       app.add_subcommand("check-performance",
                          "Read a file of measurements; exit code 0 if it is of this revision and machine, "
@@ -356,6 +358,7 @@ struct CommandLine {
     if (curves->parsed()) return vv::curves(arguments);
     if (run->parsed()) return vv::run(arguments, reports);
     if (report->parsed()) return vv::report(arguments, reports);
+    if (digitise.parsed()) return digitise.run(), all_good;
     if (check_performance->parsed()) return vv::check_performance(arguments, reports);
     return of_the_front_door(test->parsed() ? "test" : "bench");
   }
