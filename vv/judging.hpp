@@ -41,6 +41,10 @@ void set_norms(Judging& judging, const std::string& name, const RelativeNorms& n
 void add_norms(std::vector<Metric>& catalogue, const std::string& field, const std::string& reference,
                const std::string& what);
 
+/// The history of the first probe of a quantity, and component if one is named; null without such a probe.
+const History* history_of(const Judging& judging, const std::string& quantity,
+                          const std::string& component = "");
+
 /// The axis along which gravity acts and columns stand: the last one.
 std::size_t axis_of(const Scene& scene);
 
