@@ -68,6 +68,7 @@ struct NormFamily {
 NormFamily column_norms();        ///< columns settled under their own weight
 NormFamily footing_norms();       ///< rigid strips and heavy blocks that press on the ground
 NormFamily mechanism_norms();     ///< how the ground gives way below a footing; needs no reference solution
+NormFamily collapse_norms();      ///< what a granular column leaves; needs no reference solution
 NormFamily motion_norms();        ///< motions whose course is known
 NormFamily element_norms();       ///< the constitutive law alone, without particles or grid
 NormFamily conservation_norms();  ///< what no motion may change; needs no reference solution

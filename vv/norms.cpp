@@ -10,8 +10,9 @@ namespace mpm::vv {
 namespace {
 
 const std::vector<NormFamily>& families() {
-  static const std::vector<NormFamily> all{column_norms(), footing_norms(), mechanism_norms(), motion_norms(),
-                                           element_norms(), conservation_norms()};
+  static const std::vector<NormFamily> all{column_norms(),      footing_norms(), mechanism_norms(),
+                                           collapse_norms(),    motion_norms(),  element_norms(),
+                                           conservation_norms()};
   return all;
 }
 

@@ -18,6 +18,8 @@ struct Curve {
   std::vector<double> x;  ///< initial height X [m], current height x [m], settlement [m] or time [s]: see `x_name`
   std::vector<double> y;
   std::string x_name;  ///< position, initial_position, settlement or time
+  /// Standard uncertainty of each ordinate by the way it was read off the particles; empty if there is none.
+  std::vector<double> uncertainty = {};
 };
 
 enum class GateStatus {
