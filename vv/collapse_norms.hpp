@@ -1,7 +1,8 @@
 #pragma once
 
-#include <limits>
+#include <cstddef>
 #include <string>
+#include <vector>
 
 #include "solver/simulation.hpp"
 #include "vv/verdict.hpp"
