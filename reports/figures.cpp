@@ -199,6 +199,8 @@ Quantity quantity_of(const std::string& name, int dimension) {
   if (name == "weight") return {1e-3, "weight [kN" + per + "]"};
   if (name == "kinetic_energy") return {1.0, "kinetic energy [J" + per + "]"};
   if (name == "strain_energy") return {1.0, "strain energy [J" + per + "]"};
+  if (name == "potential_energy") return {1.0, "potential energy [J" + per + "]"};
+  if (name == "stress_work") return {1.0, "work of the stresses [J" + per + "]"};
   if (name == "momentum") return {1.0, "momentum [N s" + per + "]"};
   if (name == "stress_error") return {1.0, "error of stress / max |<i>σ</i><sub>exact</sub>|"};
   return {1.0, escaped(name)};

@@ -71,25 +71,27 @@ class StressUpdate {
   static constexpr std::size_t components = Points::components;
 
   /// `turns_stress`: by the Jaumann rate.
-  StressUpdate(bool sums_strain, bool turns_stress)
-      : sums_strain_(sums_strain), turns_stress_(turns_stress) {}
+  StressUpdate(bool sums_strain, bool sums_work, bool turns_stress)
+      : sums_strain_(sums_strain), sums_work_(sums_work), turns_stress_(turns_stress) {}
 
   /// Volume, then stress of the particles in lanes of slots [Kiriyama15, Eqs. 11 and 12]. The Jaumann rate is
   /// integrated exactly for a constant spin: the stress is turned by the step's rotation.
   template <class Law>
   void operator()(const Law& law, const Deformation<Dim, Value>& deformation, Eigen::Index slot,
                   Points& particles) const {
-    SymmetricTensor<Dim, Value> stress;
-    for (std::size_t c = 0; c < components; ++c) stress[c] = load<Value>(&particles.stress[c][slot]);
+    SymmetricTensor<Dim, Value> before = stress_of(slot, particles);
     if constexpr (Dim == 2) {
-      if (turns_stress_) stress = rotated(stress, deformation.rotation);
+      if (turns_stress_) before = rotated(before, deformation.rotation);
     }
     sum_strain(deformation, slot, particles);
     const auto& increment = deformation.strain_increment;
-    const Value volume = load<Value>(&particles.volume[slot]) * (1 + trace<Dim, Value>(increment));
+    const Value volume_before = load<Value>(&particles.volume[slot]);
+    const Value volume = volume_before * (1 + trace<Dim, Value>(increment));
     store(volume, &particles.volume[slot]);
-    stress = law.update(stress, increment, volume / load<Value>(&particles.initial_volume[slot]));
+    const SymmetricTensor<Dim, Value> stress =
+        law.update(before, increment, volume / load<Value>(&particles.initial_volume[slot]));
     for (std::size_t c = 0; c < components; ++c) store(stress[c], &particles.stress[c][slot]);
+    sum_work(before, stress, volume_before, increment, slot, particles);
   }
 
   /// Deformation gradient, volume and stress of a neo-Hookean body's particles: F grows by (I + L dt) F,
@@ -106,8 +108,14 @@ class StressUpdate {
     const Value volume_ratio = f[0] * f[3] - f[1] * f[2];
     for (std::size_t k = 0; k < 4; ++k) store(f[k], &particles.deformation_gradient[k][slot]);
     sum_strain(deformation, slot, particles);
-    store(volume_ratio * load<Value>(&particles.initial_volume[slot]), &particles.volume[slot]);
+    const Value volume_before = load<Value>(&particles.volume[slot]);
+    const Value volume = volume_ratio * load<Value>(&particles.initial_volume[slot]);
+    store(volume, &particles.volume[slot]);
     const SymmetricTensor<2, Value> stress = law.stress(f, volume_ratio);
+    if (sums_work_) {
+      const SymmetricTensor<2, Value> before = rotated(stress_of(slot, particles), deformation.rotation);
+      sum_work(before, stress, volume_before, increment, slot, particles);
+    }
     for (std::size_t c = 0; c < components; ++c) store(stress[c], &particles.stress[c][slot]);
   }
 
@@ -120,7 +128,26 @@ class StressUpdate {
     }
   }
 
-  bool sums_strain_, turns_stress_;
+  /// Adds the work of the stress over the step: of its mean, on the volume at the step's start, to which the
+  /// increment refers. What a pressure does is the pressure times the change of volume then. `before` is the
+  /// stress at the start turned with the material, on which a turn does no work.
+  void sum_work(const SymmetricTensor<Dim, Value>& before, const SymmetricTensor<Dim, Value>& after,
+                const Value& volume, const SymmetricTensor<Dim, Value>& strain_increment, Eigen::Index slot,
+                Points& particles) const {
+    if (!sums_work_) return;
+    SymmetricTensor<Dim, Value> mean;
+    for (std::size_t c = 0; c < components; ++c) mean[c] = (before[c] + after[c]) / 2;
+    Real* const work = &particles.stress_work[0][slot];
+    store(load<Value>(work) + volume * contraction<Dim, Value>(mean, strain_increment), work);
+  }
+
+  static SymmetricTensor<Dim, Value> stress_of(Eigen::Index slot, const Points& particles) {
+    SymmetricTensor<Dim, Value> stress;
+    for (std::size_t c = 0; c < components; ++c) stress[c] = load<Value>(&particles.stress[c][slot]);
+    return stress;
+  }
+
+  bool sums_strain_, sums_work_, turns_stress_;
 };
 
 }  // namespace mpm

@@ -64,6 +64,7 @@ void reserve_optional_fields(const Scene& scene, Eigen::Index total, Particles<D
     for (std::size_t axis = 0; axis < Dim; ++axis) particles.deformation_gradient[axis * (Dim + 1)].setOnes();
   }
   resize(particles.strain, scene.sums_strain ? total : 0);
+  resize(particles.stress_work, scene.sums_work ? total : 0);
   resize(particles.external_force, scene.driven_motion || !scene.surface_loads.empty() ? total : 0);
   const bool grows_late = scene.update_order == UpdateOrder::usf && scene.scheme == Scheme::cpgimp;
   resize(particles.pending, scene.update_order == UpdateOrder::musl || grows_late ? total : 0);

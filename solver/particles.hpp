@@ -32,6 +32,8 @@ struct Particles {
                                          ///< travel [m] in MUSL, strain increments [-] in USF with cpGIMP
   std::array<Field<Real>, components>
       strain;  ///< sum of the increments [-]; empty unless the scene asks for it
+  std::array<Field<Real>, 1> stress_work;  ///< sum of what the stress did [J per unit of the absent
+                                           ///< dimensions]; empty unless asked for
   std::array<Field<Real>, Dim * Dim>
       deformation_gradient;  ///< row by row [-]; empty unless a neo-Hookean body in 2D needs it
   std::array<Field<Real>, Dim>
@@ -76,6 +78,7 @@ struct Particles {
     all_of(self.half_size, self.half_size[0].size() > 0 ? self.half_size[0][0] : Real(0));
     all_of(self.stress, Real(0));
     all_of(self.strain, Real(0));
+    all_of(self.stress_work, Real(0));
     for (std::size_t k = 0; k < self.deformation_gradient.size(); ++k) {
       if (self.deformation_gradient[k].size() > 0)
         visit(self.deformation_gradient[k], Real(k % (Dim + 1) == 0));

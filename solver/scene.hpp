@@ -217,6 +217,7 @@ struct Scene {
   std::optional<DrivenMotion> driven_motion;
   Gravity gravity;
   bool sums_strain = false;  ///< whether particles keep the sum of their strain increments, for fields
+  bool sums_work = false;    ///< whether particles keep the sum of their stresses' work, for energy balances
   std::variant<GivenTimeStep, StableFraction> time_step = StableFraction{0.2};
   Termination termination = AtTime{1.0};
 };

@@ -222,6 +222,7 @@ class Simulation::EngineOf final : public Simulation::Engine {
     fields.initial_volume = to_doubles(p.initial_volume, p.slot_of);
     fields.mass = to_doubles(p.mass, p.slot_of);
     if (scene().sums_strain) fields.strain = interleave(p.strain, p.slot_of);
+    if (scene().sums_work) fields.stress_work = interleave(p.stress_work, p.slot_of);
     if (p.deformation_gradient[0].size() > 0) {
       fields.deformation_gradient = interleave(p.deformation_gradient, p.slot_of);
     }

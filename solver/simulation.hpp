@@ -52,6 +52,8 @@ struct ParticleFields {
   std::vector<double> mass;            ///< [particle] [kg per unit of the absent dimensions]
   std::vector<double>
       strain;  ///< sum of the increments, shape of `stress` [-]; empty unless the scene sums strain
+  std::vector<double> stress_work;  ///< [particle] sum of what the stress did [J per unit of the absent
+                                    ///< dimensions]; empty unless the scene sums work
   std::vector<double> deformation_gradient;  ///< [particle * dimension^2 + row * dimension + column] [-];
                                              ///< empty unless a neo-Hookean body in 2D needs it
   std::vector<std::size_t> body;             ///< [particle] index into Scene::bodies

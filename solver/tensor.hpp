@@ -52,4 +52,14 @@ Real trace(const SymmetricTensor<Dim, Real>& tensor) {
   }
 }
 
+/// The sum of the products of all components: the power of a stress on a rate of strain, for example.
+template <int Dim, class Real>
+Real contraction(const SymmetricTensor<Dim, Real>& a, const SymmetricTensor<Dim, Real>& b) {
+  if constexpr (Dim == 1) {
+    return a[0] * b[0];
+  } else {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + 2 * a[3] * b[3];
+  }
+}
+
 }  // namespace mpm

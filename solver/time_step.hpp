@@ -26,7 +26,7 @@ class TimeStepper {
         edges_(scene, grid_),
         rigid_bodies_(scene, grid_, time_step),
         loading_(scene, time_step, particles_),
-        update_stress_(scene.sums_strain, scene.objectivity == Objectivity::jaumann),
+        update_stress_(scene.sums_strain, scene.sums_work, scene.objectivity == Objectivity::jaumann),
         order_(scene.update_order),
         time_step_(static_cast<Real>(time_step)),
         flip_(static_cast<Real>(scene.flip_fraction)),

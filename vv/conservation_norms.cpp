@@ -7,18 +7,6 @@
 namespace mpm::vv {
 namespace {
 
-/// The history of the first probe of a quantity, and component if one is named; null without such a probe.
-const History* history_of(const Judging& judging, const std::string& quantity,
-                          const std::string& component = "") {
-  for (std::size_t i = 0; i < judging.definition.probes.size(); ++i) {
-    const HistoryProbe& probe = judging.definition.probes[i];
-    if (probe.quantity == quantity && (component.empty() || probe.component == component)) {
-      return &judging.record.histories.at(i);
-    }
-  }
-  return nullptr;
-}
-
 /// Largest change of the total momentum over sqrt(2 M E), the momentum of all mass moving with the initial
 /// kinetic energy; the total itself may be zero.
 void judge_momentum(Judging& judging, double kinetic_energy) {
@@ -47,7 +35,35 @@ void judge_energy(Judging& judging, const History& kinetic) {
   judging.set("energy_gain", most / start - 1);
 }
 
+/// Whether nothing but steady gravity does work on the bodies, and nothing but their stresses and the
+/// numerics takes energy from them.
+bool falls_freely(const Scene& scene) {
+  const auto grows = [](const Body& body) { return body.density_ramp.has_value(); };
+  return scene.rigid_bodies.empty() && scene.surface_loads.empty() && !scene.driven_motion &&
+         scene.damping == 0.0 && std::holds_alternative<StepLoading>(scene.gravity.loading) &&
+         std::none_of(scene.bodies.begin(), scene.bodies.end(), grows);
+}
+
+/// Where the potential energy has gone by the end: released = motion + work of the stresses + loss, and work
+/// of the stresses = stored + dissipated.
+void judge_balance(Judging& judging) {
+  if (!falls_freely(judging.scene())) return;
+  const History* potential = history_of(judging, "potential_energy");
+  const History* kinetic = history_of(judging, "kinetic_energy");
+  if (!potential || !kinetic) return;
+  const auto gained = [](const History& history) { return history.value.back() - history.value.front(); };
+  const double released = -gained(*potential);
+  if (!(released > 0.0)) return;
+  judging.set("energy_balance.kinetic", gained(*kinetic) / released);
+  const History* work = history_of(judging, "stress_work");
+  if (!work) return;
+  judging.set("energy_balance.numerical_loss", (released - gained(*kinetic) - gained(*work)) / released);
+  const History* strain = history_of(judging, "strain_energy");
+  if (strain) judging.set("energy_balance.dissipated", (gained(*work) - gained(*strain)) / released);
+}
+
 void judge(Judging& judging) {
+  judge_balance(judging);
   const History* kinetic = history_of(judging, "kinetic_energy");
   if (!kinetic || !(kinetic->value.front() > 0.0)) return;
   judge_momentum(judging, kinetic->value.front());
@@ -63,6 +79,14 @@ std::vector<Metric> catalogue() {
       {"energy_loss", "-", "",
        "kinetic and strain energy lost from start to end, over their sum at the start; needs probes of both"},
       {"energy_gain", "-", "", "largest sum of both energies over that at the start, minus 1"},
+      {"energy_balance.kinetic", "-", "",
+       "kinetic energy gained over the potential energy released, at the end; needs probes of both"},
+      {"energy_balance.numerical_loss", "-", "",
+       "potential energy released that is neither kinetic nor work of the stresses, over all of it; needs "
+       "probes of the three"},
+      {"energy_balance.dissipated", "-", "",
+       "work of the stresses that is not stored as strain energy, over the potential energy released; needs "
+       "probes of all four"},
   };
 }
 

@@ -41,6 +41,10 @@ void set_norms(Judging& judging, const std::string& name, const RelativeNorms& n
 void add_norms(std::vector<Metric>& catalogue, const std::string& field, const std::string& reference,
                const std::string& what);
 
+/// The history of the first probe of a quantity, and component if one is named; null without such a probe.
+const History* history_of(const Judging& judging, const std::string& quantity,
+                          const std::string& component = "");
+
 /// The axis along which gravity acts and columns stand: the last one.
 std::size_t axis_of(const Scene& scene);
 
@@ -64,6 +68,7 @@ struct NormFamily {
 NormFamily column_norms();        ///< columns settled under their own weight
 NormFamily footing_norms();       ///< rigid strips and heavy blocks that press on the ground
 NormFamily mechanism_norms();     ///< how the ground gives way below a footing; needs no reference solution
+NormFamily collapse_norms();      ///< what a granular column leaves; needs no reference solution
 NormFamily motion_norms();        ///< motions whose course is known
 NormFamily element_norms();       ///< the constitutive law alone, without particles or grid
 NormFamily conservation_norms();  ///< what no motion may change; needs no reference solution

@@ -391,6 +391,7 @@ ParticleFields changed_back(const Change& change, ParticleFields fields, double 
   stress_back(change, fields.strain, dimension, 1.0);
   deformation_back(change, fields.deformation_gradient, dimension);
   const double volume = change.volume(fields.dimension);
+  for (double& value : fields.stress_work) value /= change.stress() * volume;
   for (double& value : fields.volume) value /= volume;
   for (double& value : fields.initial_volume) value /= volume;
   for (double& value : fields.mass) value /= change.density() * volume;

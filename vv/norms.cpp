@@ -10,8 +10,9 @@ namespace mpm::vv {
 namespace {
 
 const std::vector<NormFamily>& families() {
-  static const std::vector<NormFamily> all{column_norms(), footing_norms(), mechanism_norms(), motion_norms(),
-                                           element_norms(), conservation_norms()};
+  static const std::vector<NormFamily> all{column_norms(),      footing_norms(), mechanism_norms(),
+                                           collapse_norms(),    motion_norms(),  element_norms(),
+                                           conservation_norms()};
   return all;
 }
 
@@ -101,6 +102,16 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
 }
 
 }  // namespace
+
+const History* history_of(const Judging& judging, const std::string& quantity, const std::string& component) {
+  for (std::size_t i = 0; i < judging.definition.probes.size(); ++i) {
+    const HistoryProbe& probe = judging.definition.probes[i];
+    if (probe.quantity == quantity && (component.empty() || probe.component == component)) {
+      return &judging.record.histories.at(i);
+    }
+  }
+  return nullptr;
+}
 
 double larger(double a, double b) { return a >= b || std::isnan(a) ? a : b; }
 

@@ -71,6 +71,8 @@ constexpr ProbeKind probe_kinds[] = {
     {"momentum", ProbeTarget::everything, ProbeKind::Components::vector},
     {"kinetic_energy", ProbeTarget::everything, ProbeKind::Components::none},
     {"strain_energy", ProbeTarget::everything, ProbeKind::Components::none},
+    {"potential_energy", ProbeTarget::everything, ProbeKind::Components::none},
+    {"stress_work", ProbeTarget::everything, ProbeKind::Components::none},
 };
 
 std::vector<std::string> probe_quantities() {
@@ -154,10 +156,7 @@ void read_component(const JsonPlace& place, const RunRequest& run, HistoryProbe&
     require_constrained(place, run, probe, axes == 1 ? "x" : "y");
 }
 
-bool stores_energy(const Body& body) {
-  return std::holds_alternative<LinearElastic>(body.material) ||
-         std::holds_alternative<NeoHookean>(body.material);
-}
+bool stores_energy(const Body& body) { return !std::holds_alternative<ZhangElastic>(body.material); }
 
 /// Checks a probe against the scene of a run and fills in what only the scene tells.
 void read_probed(const JsonPlace& place, const RunRequest& run, HistoryProbe& probe) {
@@ -168,11 +167,14 @@ void read_probed(const JsonPlace& place, const RunRequest& run, HistoryProbe& pr
   if (probe.target == ProbeTarget::body || probe.target == ProbeTarget::rigid_body)
     read_named(place["of"], run, probe);
   read_component(place["component"], run, probe);
+  if (probe.quantity == "stress_work" && !run.scene.sums_work)
+    place["quantity"].refuse("a quantity that the scene keeps",
+                             ", which needs sums_work to be true" + in_run(run));
   if (probe.quantity != "strain_energy") return;
   for (const Body& body : run.scene.bodies) {
     if (stores_energy(body)) continue;
     place["quantity"].refuse(
-        "a quantity of the bodies there are; strain energy needs linear_elastic or neo_hookean",
+        "a quantity of the bodies there are; strain energy needs linear_elastic, mohr_coulomb or neo_hookean",
         ", but \"" + body.name + "\" has another law" + in_run(run));
   }
 }

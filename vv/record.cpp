@@ -227,6 +227,7 @@ void for_each_particle_field(Fields& fields, Visit visit) {
   visit("initial_volume", fields.initial_volume, std::size_t{1});
   visit("mass", fields.mass, std::size_t{1});
   visit("strain", fields.strain, components);
+  visit("stress_work", fields.stress_work, std::size_t{1});
   visit("deformation_gradient", fields.deformation_gradient, dimension * dimension);
 }
 
@@ -254,7 +255,8 @@ ParticleFields fields_from_json(const Json& json) {
   }
   for_each_particle_field(fields, [&](const char* name, std::vector<double>& values, std::size_t entries) {
     values = numbers_from(json.at(name));
-    const bool optional = &values == &fields.strain || &values == &fields.deformation_gradient;
+    const bool optional = &values == &fields.strain || &values == &fields.stress_work ||
+                          &values == &fields.deformation_gradient;
     if (values.size() != fields.body.size() * entries && !(optional && values.empty())) {
       throw std::runtime_error("snapshot of unequal lengths");
     }
@@ -465,7 +467,7 @@ class Recorder {
     std::int64_t count = 0;
     for (const auto* field :
          {&fields.displacement, &fields.position, &fields.velocity, &fields.half_size, &fields.stress,
-          &fields.volume, &fields.mass, &fields.strain, &fields.deformation_gradient}) {
+          &fields.volume, &fields.mass, &fields.strain, &fields.stress_work, &fields.deformation_gradient}) {
       count +=
           std::count_if(field->begin(), field->end(), [](double value) { return !std::isfinite(value); });
     }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 
 namespace mpm::vv {
@@ -133,6 +134,11 @@ double energy_of(const NeoHookean& law, const ParticleFields& fields, std::size_
   return (0.5 * lambda * log_j * log_j - mu * log_j + 0.5 * mu * (squares - 2)) * fields.initial_volume[p];
 }
 
+/// Of the elastic part of the strain, which alone stores energy.
+double energy_of(const MohrCoulomb& law, const ParticleFields& fields, std::size_t p) {
+  return energy_of(LinearElastic{law.youngs_modulus, law.poissons_ratio}, fields, p);
+}
+
 template <class Law>
 double energy_of(const Law&, const ParticleFields&, std::size_t) {
   throw std::invalid_argument("no strain energy is known of a body's law");
@@ -198,6 +204,12 @@ Measure measure_of_everything(const HistoryProbe& probe, std::size_t component, 
   if (probe.quantity == "kinetic_energy") {
     return [](const Observation& now) { return kinetic_energy(now.particles()); };
   }
+  if (probe.quantity == "potential_energy") {
+    return [&scene](const Observation& now) { return potential_energy(scene, now.particles()); };
+  }
+  if (probe.quantity == "stress_work") {
+    return [](const Observation& now) { return stress_work(now.particles()); };
+  }
   if (probe.quantity != "strain_energy") refuse(probe);
   return [&scene](const Observation& now) { return strain_energy(scene, now.particles()); };
 }
@@ -241,6 +253,23 @@ double strain_energy(const Scene& scene, const ParticleFields& fields) {
                       scene.bodies[fields.body[p]].material);
   }
   return sum;
+}
+
+double potential_energy(const Scene& scene, const ParticleFields& fields) {
+  const auto dimension = static_cast<std::size_t>(fields.dimension);
+  double sum = 0.0;
+  for (std::size_t p = 0; p < fields.mass.size(); ++p) {
+    for (std::size_t axis = 0; axis < dimension; ++axis) {
+      sum -= fields.mass[p] * scene.gravity.acceleration[axis] * scene.gravity.level *
+             fields.displacement[p * dimension + axis];
+    }
+  }
+  return sum;
+}
+
+double stress_work(const ParticleFields& fields) {
+  if (fields.stress_work.empty()) throw std::invalid_argument("the particles of this scene sum no work");
+  return std::accumulate(fields.stress_work.begin(), fields.stress_work.end(), 0.0);
 }
 
 Sampler::Sampler(const HistoryProbe& probe, const Scene& scene, const Observation& start)

@@ -27,10 +27,18 @@ class Observation {
 };
 
 /// Energy stored in the strain of all particles [J per unit of the absent dimensions]. Of a linear elastic
-/// body 1/2 stress : compliance : stress times the current volume, which is exact for small strain only; of a
-/// neo-Hookean body the potential of its law times the initial volume. Throws std::invalid_argument for a
-/// body with any other law.
+/// or Mohr–Coulomb body 1/2 stress : compliance : stress times the current volume, which is exact for small
+/// strain only; of a neo-Hookean body the potential of its law times the initial volume. Throws
+/// std::invalid_argument for a body with any other law.
 double strain_energy(const Scene& scene, const ParticleFields& fields);
+
+/// What all weight has gained in potential energy since the start, -mass gravity . displacement, in full
+/// gravity [J per unit of the absent dimensions].
+double potential_energy(const Scene& scene, const ParticleFields& fields);
+
+/// What the stresses of all particles have done since the start [J per unit of the absent dimensions]. Throws
+/// std::invalid_argument if the scene does not sum work.
+double stress_work(const ParticleFields& fields);
 
 /// A probe at work: what it looks at, when it is due, and what it has seen.
 class Sampler {

@@ -33,6 +33,7 @@ struct Order {
     scene.scheme = Scheme::cpgimp;
     scene.update_order = UpdateOrder::musl;
     scene.sums_strain = true;
+    scene.sums_work = true;
     scene.cell_size = 0.1;
     scene.grid_lower = {-0.7, 0.2};
     scene.grid_upper = {4.6, 6.1};

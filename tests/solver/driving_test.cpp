@@ -385,9 +385,126 @@ TEST(StrainSum, AddsUpWhatTheStressSaw) {
   }
 }
 
+// ---- work
+
+double sum_of(const std::vector<double>& field) { return std::accumulate(field.begin(), field.end(), 0.0); }
+
+TEST(VerificationOfWork, ASlowCompressionDoesTheWorkOfHenckysLaw) {
+  // M ln(lambda) on a volume of V0 lambda, over the logarithmic strain e: V0 M [(e - 1) exp(e) + 1].
+  const double modulus = 1e6 * 0.7 / (1.3 * 0.4);
+  Scene scene = confined_block();
+  scene.sums_work = true;
+  RigidBody plate = plate_on(scene, 0.2);
+  plate.ramp = 0.1;
+  scene.rigid_bodies = {plate};
+  scene.termination = AtTime{0.3};
+  for (UpdateOrder order : every_order) {
+    scene.update_order = order;
+    const ParticleFields fields = run_to_end(scene).particles();
+    for (std::size_t p = 0; p < fields.mass.size(); ++p) {
+      const double e = std::log(fields.volume[p] / fields.initial_volume[p]);
+      EXPECT_LT(e, -0.05);
+      const double exact = fields.initial_volume[p] * modulus * ((e - 1) * std::exp(e) + 1);
+      // The sum of the increments, which the stress follows, is the logarithm to first order in them.
+      EXPECT_NEAR(fields.stress_work[p], exact, 5e-4 * exact);
+    }
+  }
+}
+
+/// Potential of a compressible neo-Hookean law per initial volume, see `NeoHookeanLaw`.
+double potential_of(double young, double nu, const double* f) {
+  const double mu = young / (2 * (1 + nu)), lambda = 2 * mu * nu / (1 - 2 * nu);
+  const double log_j = std::log(f[0] * f[3] - f[1] * f[2]);
+  const double squares = f[0] * f[0] + f[1] * f[1] + f[2] * f[2] + f[3] * f[3];
+  return lambda / 2 * log_j * log_j - mu * log_j + mu / 2 * (squares - 2);
+}
+
+TEST(VerificationOfWork, OfAnElasticBlockThatSagsIsItsStrainEnergy) {
+  // Held at its base, free at its side: sheared, turned, and never far from falling over.
+  Scene scene = confined_block();
+  scene.grid_upper[0] = 0.8;
+  scene.bodies[0].material = NeoHookean{1e5, 0.3};
+  scene.gravity.acceleration = {0.0, -10.0};
+  scene.sums_work = true;
+  scene.time_step = StableFraction{0.1};
+  for (UpdateOrder order : every_order) {
+    scene.update_order = order;
+    const ParticleFields fields = run_to_end(scene).particles();
+    double stored = 0.0, turned = 0.0;
+    for (std::size_t p = 0; p < fields.mass.size(); ++p) {
+      const double* f = &fields.deformation_gradient[4 * p];
+      stored += fields.initial_volume[p] * potential_of(1e5, 0.3, f);
+      turned = std::max(turned, std::abs(f[2] - f[1]) / 2);
+    }
+    EXPECT_GT(turned, 0.005);
+    EXPECT_NEAR(sum_of(fields.stress_work), stored, 1e-3 * stored);
+  }
+}
+
+/// Particles of one law, sheared in the plane by an angle in equal steps, with a part of each as a turn.
+ParticleFields sheared(const Material& material, double angle, int steps, double turn, bool turns_stress) {
+  Scene scene = free_block();
+  scene.bodies[0].material = material;
+  scene.bodies[0].initial_stress = UniformStress{.xx = -200.0, .yy = -200.0, .zz = -200.0, .xy = 0.0};
+  scene.sums_work = true;
+  Particles<2, double> particles = fill_bodies<2, double>(scene, true);
+  const StressUpdate<2, double> update(false, true, turns_stress);
+  using Value = Lanes<double>;
+  Deformation<2, Value> step{};
+  for (Value& component : step.strain_increment) component = Value(0);
+  step.strain_increment[3] = Value(angle / 2 / steps);
+  step.rotation = Value(turn / steps);
+  const auto law = law_of<2, double>(material);
+  for (int k = 0; k < steps; ++k)
+    std::visit([&](const auto& each) { update(each, step, 0, particles); }, law);
+  ParticleFields fields;
+  fields.stress_work = {particles.stress_work[0][0], particles.stress_work[0][lane_count<double> - 1]};
+  fields.initial_volume = {particles.initial_volume[0]};
+  fields.stress = {particles.stress[3][0]};
+  return fields;
+}
+
+TEST(VerificationOfWork, OfAShearedPlasticBodyIsStoredUntilItYieldsAndLostFromThenOn) {
+  // Tresca: the shear stress is G angle up to c = 100 Pa, then c; what is stored is c^2/(2 G).
+  constexpr double cohesion = 100.0, shear_modulus = 1e6 / 2.6, angle = 0.01;
+  const MohrCoulomb clay{1e6, 0.3, 0.0, cohesion, 0.0};
+  const ParticleFields fields = sheared(clay, angle, 10000, 0.0, false);
+  EXPECT_NEAR(fields.stress[0], cohesion, 1e-9);
+  const double stored = cohesion * cohesion / (2 * shear_modulus);
+  const double exact = fields.initial_volume[0] * (cohesion * angle - stored);
+  // One step in ten thousand is half elastic.
+  for (const double work : fields.stress_work) EXPECT_NEAR(work, exact, 1e-5 * exact);
+}
+
+TEST(VerificationOfWork, TurningAStressDoesNone) {
+  const LinearElastic elastic{1e6, 0.3};
+  for (const Material& material : {Material(elastic), Material(NeoHookean{1e6, 0.3})}) {
+    EXPECT_EQ(sheared(material, 0.0, 100, 1.0, true).stress_work[0], 0.0);
+  }
+  // Sheared to G angle = 3846 Pa and turned on the way, the energy is that of the shear.
+  const double shear_modulus = 1e6 / 2.6;
+  const ParticleFields turned = sheared(elastic, 0.01, 10000, 1e-6, true);
+  EXPECT_NEAR(turned.stress_work[0], 0.5 * shear_modulus * 1e-4 * turned.initial_volume[0],
+              1e-5 * turned.stress_work[0]);
+}
+
+TEST(VerificationOfWork, IsSummedOnTheSideAndChangesNoBit) {
+  Scene scene = free_block();
+  scene.bodies[0].velocity = {1.0, 0.0};
+  scene.edges[0][1] = Condition::roller;
+  scene.bodies[0].upper[0] = 0.9;
+  const ParticleFields without = run_to_end(scene).particles();
+  scene.sums_work = true;
+  const ParticleFields with = run_to_end(scene).particles();
+  EXPECT_EQ(with.position, without.position);
+  EXPECT_EQ(with.stress, without.stress);
+  EXPECT_GT(sum_of(with.stress_work), 0.0);
+}
+
 TEST(Features, ASceneWithoutThemStoresNothingForThem) {
   const ParticleFields fields = Simulation(free_block()).particles();
   EXPECT_TRUE(fields.strain.empty());
+  EXPECT_TRUE(fields.stress_work.empty());
   EXPECT_TRUE(fields.deformation_gradient.empty());
 }
 

@@ -81,6 +81,7 @@ constexpr Compared compared_fields[] = {
     {"stress", &ParticleFields::stress, 1000.0},           // Pa; a hundredth of the moduli
     {"volume", &ParticleFields::volume, 1e-4},             // m or m^2
     {"strain", &ParticleFields::strain, 0.01},
+    {"stress work", &ParticleFields::stress_work, 1e-3},  // J per m or m^2; 1000 Pa * 0.01 * 1e-4 m^2
     {"deformation gradient", &ParticleFields::deformation_gradient, 1.0},
 };
 constexpr std::size_t field_count = std::size(compared_fields);

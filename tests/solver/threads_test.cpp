@@ -99,6 +99,7 @@ Scene pile(Scheme scheme, UpdateOrder order, Precision precision, LockingControl
   scene.precision = precision;
   scene.objectivity = Objectivity::jaumann;
   scene.sums_strain = true;
+  scene.sums_work = true;
   scene.damping = order == UpdateOrder::usf ? 0.0 : 0.5;
   scene.flip_fraction = 0.95;  // so that no method fails within the test
   scene.cell_size = 0.1;
@@ -164,6 +165,7 @@ void expect_same_bits(const Seen& one, const Seen& other) {
   EXPECT_EQ(one.fields.volume, other.fields.volume);
   EXPECT_EQ(one.fields.mass, other.fields.mass);
   EXPECT_EQ(one.fields.strain, other.fields.strain);
+  EXPECT_EQ(one.fields.stress_work, other.fields.stress_work);
   EXPECT_EQ(one.fields.deformation_gradient, other.fields.deformation_gradient);
   EXPECT_EQ(one.fields.body, other.fields.body);
   ASSERT_EQ(one.bodies.size(), other.bodies.size());

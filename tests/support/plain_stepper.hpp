@@ -89,6 +89,7 @@ class PlainStepper {
     fields.initial_volume = interleaved(std::array{particles_.initial_volume});
     fields.mass = interleaved(std::array{particles_.mass});
     if (scene_.sums_strain) fields.strain = interleaved(particles_.strain);
+    if (scene_.sums_work) fields.stress_work = interleaved(particles_.stress_work);
     if (particles_.deformation_gradient[0].size() > 0)
       fields.deformation_gradient = interleaved(particles_.deformation_gradient);
     for (std::size_t b = 0; b < particles_.bodies.size(); ++b) {
@@ -242,9 +243,40 @@ class PlainStepper {
     for (Eigen::Index p = 0; p < particles_.count(); ++p) {
       const auto& strain = strain_[static_cast<std::size_t>(p)];
       for (std::size_t c = 0; scene_.sums_strain && c < components; ++c) particles_.strain[c][p] += strain[c];
-      std::visit(
-          [&](const auto& law) { update_stress(law, growth_[static_cast<std::size_t>(p)], strain, p); },
-          law_of<Dim, Real>(body_at(p).material));
+      const Matrix& growth = growth_[static_cast<std::size_t>(p)];
+      const Real power_before = power_of_turned_stress(p, growth, strain),
+                 volume_before = particles_.volume[p];
+      std::visit([&](const auto& law) { update_stress(law, growth, strain, p); },
+                 law_of<Dim, Real>(body_at(p).material));
+      if (!scene_.sums_work) continue;
+      particles_.stress_work[0][p] += (power_before + power(p, strain)) / 2 * volume_before;
+    }
+  }
+
+  /// Of the stress on a strain increment, per volume.
+  Real power(Eigen::Index p, const SymmetricTensor<Dim, Real>& strain) const {
+    Real sum(0);
+    for (std::size_t a = 0; a < Dim; ++a) {
+      for (std::size_t b = 0; b < Dim; ++b) sum += stress(p, a, b) * strain[a == b ? a : 3];
+    }
+    return sum;
+  }
+
+  /// The same of the stress turned with the material, where the law's stress turns with it.
+  Real power_of_turned_stress(Eigen::Index p, const Matrix& growth,
+                              const SymmetricTensor<Dim, Real>& strain) {
+    if constexpr (Dim == 1) {
+      return power(p, strain);
+    } else {
+      const bool turns = scene_.objectivity == Objectivity::jaumann ||
+                         std::holds_alternative<NeoHookean>(body_at(p).material);
+      if (!turns) return power(p, strain);
+      SymmetricTensor<Dim, Real> kept;
+      for (std::size_t c = 0; c < components; ++c) kept[c] = particles_.stress[c][p];
+      turn_stress(p, (growth[1][0] - growth[0][1]) / 2);
+      const Real found = power(p, strain);
+      set_stress(p, kept);
+      return found;
     }
   }
 

@@ -148,5 +148,54 @@ TEST(GeneralMetrics, CountWhatIsNoNumberAndKeepItInTheLargestCompression) {
   EXPECT_EQ(trial.metrics().at("non_finite_values"), 1.0);
 }
 
+/// Falls freely; 10 J of potential energy become 1 J of motion, 7 J of work, of which 2 J are stored.
+Trial fall() {
+  Trial trial;
+  trial.probe("potential_energy", "", {0.0, -4.0, -10.0}).probe("kinetic_energy", "", {0.5, 3.0, 1.5});
+  trial.probe("stress_work", "", {0.0, 3.0, 7.0}).probe("strain_energy", "", {1.0, 1.0, 3.0});
+  return trial;
+}
+
+TEST(EnergyBalance, SharesOutWhatGravityHasReleased) {
+  const auto metrics = fall().metrics();
+  EXPECT_NEAR(metrics.at("energy_balance.kinetic"), 0.1, 1e-15);
+  EXPECT_NEAR(metrics.at("energy_balance.numerical_loss"), 0.2, 1e-15);
+  EXPECT_NEAR(metrics.at("energy_balance.dissipated"), 0.5, 1e-15);
+}
+
+TEST(EnergyBalance, IsNotDrawnUpWhereSomethingElseDoesWork) {
+  const std::vector<void (*)(Scene&)> disturbances = {
+      [](Scene& scene) { scene.damping = 0.1; },
+      [](Scene& scene) { scene.rigid_bodies.emplace_back(); },
+      [](Scene& scene) { scene.surface_loads.emplace_back(); },
+      [](Scene& scene) { scene.driven_motion.emplace(); },
+      [](Scene& scene) { scene.gravity.loading = RampLoading{1.0}; },
+      [](Scene& scene) {
+        scene.bodies.emplace_back();
+        scene.bodies[0].density_ramp = DensityRamp{2.0, 0.0, 1.0};
+      }};
+  for (const auto& disturb : disturbances) {
+    Trial trial = fall();
+    disturb(trial.request.scene);
+    for (const auto& [name, value] : trial.metrics())
+      EXPECT_FALSE(name.starts_with("energy_balance")) << name;
+  }
+}
+
+TEST(EnergyBalance, SaysWhatItsProbesAllow) {
+  Trial trial;
+  trial.probe("potential_energy", "", {0.0, -10.0});
+  EXPECT_FALSE(trial.metrics().contains("energy_balance.kinetic"));
+  trial.probe("kinetic_energy", "", {0.0, 1.0});
+  EXPECT_TRUE(trial.metrics().contains("energy_balance.kinetic"));
+  EXPECT_FALSE(trial.metrics().contains("energy_balance.numerical_loss"));
+  trial.probe("stress_work", "", {0.0, 8.0});
+  EXPECT_TRUE(trial.metrics().contains("energy_balance.numerical_loss"));
+  EXPECT_FALSE(trial.metrics().contains("energy_balance.dissipated"));
+  Trial rising;
+  rising.probe("potential_energy", "", {0.0, 1.0}).probe("kinetic_energy", "", {1.0, 0.0});
+  EXPECT_FALSE(rising.metrics().contains("energy_balance.kinetic"));
+}
+
 }  // namespace
 }  // namespace mpm::vv

@@ -69,6 +69,7 @@ Scene slump(const Material& material) {
   scene.gravity.acceleration = {0.0, -9.8};
   scene.objectivity = Objectivity::jaumann;
   scene.sums_strain = true;
+  scene.sums_work = true;
   return scene;
 }
 
@@ -237,7 +238,7 @@ std::vector<double> values_of(const ParticleFields& fields, std::size_t p) {
   for (const auto* field :
        {&fields.initial_position, &fields.displacement, &fields.position, &fields.velocity, &fields.half_size,
         &fields.stress, &fields.volume, &fields.initial_volume, &fields.mass, &fields.strain,
-        &fields.deformation_gradient})
+        &fields.stress_work, &fields.deformation_gradient})
     add(*field);
   return values;
 }

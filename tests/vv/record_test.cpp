@@ -73,6 +73,7 @@ Record full_record() {
   fields.displacement = fields.position = fields.velocity = fields.half_size = {1, 2, 3, 4};
   fields.stress = fields.strain = {-123456789.4, nan, infinity, 1e10 / 7, 5, 6, 7, 8};
   fields.volume = fields.initial_volume = fields.mass = {0.1, 0.2};
+  fields.stress_work = {1.25, -3.0};
   fields.body = {0, 3};
   record.snapshots = {{"end", 0.1 + 0.2, fields}};
   record.cost = {.wall_seconds = 1.5e-7, .steps = 12, .particle_steps = 600, .memory_bytes = 4096};
@@ -146,6 +147,7 @@ TEST(RecordText, BringsBackSnapshotsToNineDigits) {
   EXPECT_EQ(snapshot.fields.stress[2], infinity);
   EXPECT_EQ(snapshot.fields.stress[3], 1428571430.0);
   EXPECT_EQ(snapshot.fields.strain.size(), 8u);
+  EXPECT_EQ(snapshot.fields.stress_work, (std::vector<double>{1.25, -3.0}));
   EXPECT_TRUE(snapshot.fields.deformation_gradient.empty());
   EXPECT_EQ(snapshot.fields.mass, (std::vector<double>{0.1, 0.2}));
   EXPECT_EQ(snapshot.fields.body, (std::vector<std::size_t>{0, 3}));
@@ -172,7 +174,7 @@ TEST(RecordText, RefusesWhatIsNoWholeRecord) {
   Json uneven = good;
   uneven["histories"][0]["time"].push_back(0.3);
   EXPECT_ANY_THROW(record_from_json(uneven));
-  for (const char* key : {"initial_position", "stress", "strain", "mass", "body"}) {
+  for (const char* key : {"initial_position", "stress", "strain", "stress_work", "mass", "body"}) {
     Json lacking = good;
     lacking["snapshots"][0]["fields"][key].erase(0);
     EXPECT_ANY_THROW(record_from_json(lacking)) << key;
@@ -527,7 +529,39 @@ TEST(StrainEnergy, OfANeoHookeanBlockIsTheWorkOfItsStress) {
   EXPECT_NEAR(strain_energy(scene, fields), work, 1e-9 * work);
 }
 
-TEST(StrainEnergy, OfAnElasticBarIsKnownAndOfSoilRefused) {
+TEST(StrainEnergy, OfSoilIsThatOfItsElasticStrain) {
+  Scene scene = flying_block().scene;
+  ParticleFields fields;
+  fields.dimension = 2;
+  fields.body = {1};
+  fields.mass = {1.0};
+  fields.initial_volume = fields.volume = {2.0};
+  fields.stress = {1e3, -2e3, 3e3, 4e3};
+  scene.bodies[1].material = LinearElastic{1e7, 0.3};
+  const double elastic = strain_energy(scene, fields);
+  scene.bodies[1].material = MohrCoulomb{1e7, 0.3, 0.5, 1e3, 0.0};
+  EXPECT_GT(elastic, 0.0);
+  EXPECT_EQ(strain_energy(scene, fields), elastic);
+}
+
+TEST(PotentialEnergy, IsWhatTheWeightHasGainedInFullGravity) {
+  Scene scene = flying_block().scene;
+  scene.gravity = {.acceleration = {2.0, -10.0}, .level = 3.0, .loading = StepLoading{}};
+  ParticleFields fields;
+  fields.dimension = 2;
+  fields.mass = {1.0, 4.0};
+  fields.displacement = {0.5, 0.0, 0.0, -0.25};
+  EXPECT_DOUBLE_EQ(potential_energy(scene, fields), -3.0 * (1.0 * 2.0 * 0.5 + 4.0 * 10.0 * 0.25));
+}
+
+TEST(StressWork, IsSummedOverTheParticlesThatKeepIt) {
+  ParticleFields fields;
+  EXPECT_THROW(stress_work(fields), std::invalid_argument);
+  fields.stress_work = {1.0, 2.5};
+  EXPECT_EQ(stress_work(fields), 3.5);
+}
+
+TEST(StrainEnergy, OfAnElasticBarIsKnownAndOfTheColumnsLawRefused) {
   Scene scene = test::column_scene(Scheme::cpgimp, 1);
   ParticleFields fields;
   fields.body = {0};
