@@ -79,19 +79,15 @@ class StressUpdate {
   template <class Law>
   void operator()(const Law& law, const Deformation<Dim, Value>& deformation, Eigen::Index slot,
                   Points& particles) const {
-    SymmetricTensor<Dim, Value> before = stress_of(slot, particles);
-    if constexpr (Dim == 2) {
-      if (turns_stress_) before = rotated(before, deformation.rotation);
-    }
+    SymmetricTensor<Dim, Value> stress = turned(stress_of(slot, particles), deformation);
     sum_strain(deformation, slot, particles);
     const auto& increment = deformation.strain_increment;
-    const Value volume_before = load<Value>(&particles.volume[slot]);
-    const Value volume = volume_before * (1 + trace<Dim, Value>(increment));
+    const Value volume = load<Value>(&particles.volume[slot]) * (1 + trace<Dim, Value>(increment));
+    stress = law.update(stress, increment, volume / load<Value>(&particles.initial_volume[slot]));
+    // The stress before is read once more rather than kept: who sums no work has the registers for the law.
+    if (sums_work_) sum_work(turned(stress_of(slot, particles), deformation), stress, increment, slot, particles);
     store(volume, &particles.volume[slot]);
-    const SymmetricTensor<Dim, Value> stress =
-        law.update(before, increment, volume / load<Value>(&particles.initial_volume[slot]));
     for (std::size_t c = 0; c < components; ++c) store(stress[c], &particles.stress[c][slot]);
-    sum_work(before, stress, volume_before, increment, slot, particles);
   }
 
   /// Deformation gradient, volume and stress of a neo-Hookean body's particles: F grows by (I + L dt) F,
@@ -108,14 +104,12 @@ class StressUpdate {
     const Value volume_ratio = f[0] * f[3] - f[1] * f[2];
     for (std::size_t k = 0; k < 4; ++k) store(f[k], &particles.deformation_gradient[k][slot]);
     sum_strain(deformation, slot, particles);
-    const Value volume_before = load<Value>(&particles.volume[slot]);
-    const Value volume = volume_ratio * load<Value>(&particles.initial_volume[slot]);
-    store(volume, &particles.volume[slot]);
     const SymmetricTensor<2, Value> stress = law.stress(f, volume_ratio);
     if (sums_work_) {
       const SymmetricTensor<2, Value> before = rotated(stress_of(slot, particles), deformation.rotation);
-      sum_work(before, stress, volume_before, increment, slot, particles);
+      sum_work(before, stress, increment, slot, particles);
     }
+    store(volume_ratio * load<Value>(&particles.initial_volume[slot]), &particles.volume[slot]);
     for (std::size_t c = 0; c < components; ++c) store(stress[c], &particles.stress[c][slot]);
   }
 
@@ -129,16 +123,25 @@ class StressUpdate {
   }
 
   /// Adds the work of the stress over the step: of its mean, on the volume at the step's start, to which the
-  /// increment refers. What a pressure does is the pressure times the change of volume then. `before` is the
-  /// stress at the start turned with the material, on which a turn does no work.
-  void sum_work(const SymmetricTensor<Dim, Value>& before, const SymmetricTensor<Dim, Value>& after,
-                const Value& volume, const SymmetricTensor<Dim, Value>& strain_increment, Eigen::Index slot,
-                Points& particles) const {
-    if (!sums_work_) return;
+  /// increment refers and which the particle still has. What a pressure does is the pressure times the change of
+  /// volume then. `before` is the stress at the start turned with the material, on which a turn does no work.
+  static void sum_work(const SymmetricTensor<Dim, Value>& before, const SymmetricTensor<Dim, Value>& after,
+                       const SymmetricTensor<Dim, Value>& strain_increment, Eigen::Index slot,
+                       Points& particles) {
     SymmetricTensor<Dim, Value> mean;
     for (std::size_t c = 0; c < components; ++c) mean[c] = (before[c] + after[c]) / 2;
     Real* const work = &particles.stress_work[0][slot];
+    const Value volume = load<Value>(&particles.volume[slot]);
     store(load<Value>(work) + volume * contraction<Dim, Value>(mean, strain_increment), work);
+  }
+
+  /// The stress turned with the material, if it turns.
+  SymmetricTensor<Dim, Value> turned(const SymmetricTensor<Dim, Value>& stress,
+                                     const Deformation<Dim, Value>& deformation) const {
+    if constexpr (Dim == 2) {
+      if (turns_stress_) return rotated(stress, deformation.rotation);
+    }
+    return stress;
   }
 
   static SymmetricTensor<Dim, Value> stress_of(Eigen::Index slot, const Points& particles) {
