@@ -77,6 +77,16 @@ void check_method(const Scene& scene) {
   require_known(scene.objectivity, {Objectivity::none, Objectivity::jaumann}, "/objectivity", "objectivity");
   require(scene.dimension == 2 || scene.objectivity == Objectivity::none, "/objectivity",
           "none in one dimension, where nothing turns", "jaumann");
+  if (scene.domain_limit) {
+    require(*scene.domain_limit > 0.0 && *scene.domain_limit <= 1.0, "/domain_limit", "a number above 0, at most 1",
+            text_of(*scene.domain_limit));
+    for (const Body& body : scene.bodies) {
+      for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene.dimension); ++axis) {
+        require(2 * body.particles_per_cell[axis] * *scene.domain_limit >= 1.0, "/domain_limit",
+                "at least the half size that the particles of every body have at the start", text_of(*scene.domain_limit));
+      }
+    }
+  }
   require(scene.flip_fraction >= 0.0 && scene.flip_fraction <= 1.0, "/flip_fraction", "a number from 0 to 1",
           text_of(scene.flip_fraction));
   require(scene.damping >= 0.0 && scene.damping < 1.0, "/damping", "a number from 0 to below 1",

@@ -218,6 +218,9 @@ struct Scene {
   Gravity gravity;
   bool sums_strain = false;  ///< whether particles keep the sum of their strain increments, for fields
   bool sums_work = false;    ///< whether particles keep the sum of their stresses' work, for energy balances
+  /// Largest half size of a particle of cpgimp along any axis, in cells, above 0 and at most 1: a domain that would
+  /// grow beyond stays as large. Without one, such a run ends with domain_too_large.
+  std::optional<double> domain_limit;
   std::variant<GivenTimeStep, StableFraction> time_step = StableFraction{0.2};
   Termination termination = AtTime{1.0};
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <variant>
 #include <vector>
 
@@ -31,6 +32,7 @@ class TimeStepper {
         time_step_(static_cast<Real>(time_step)),
         flip_(static_cast<Real>(scene.flip_fraction)),
         damping_(static_cast<Real>(scene.damping)),
+        largest_half_size_(half_size_limit(scene)),
         empty_mass_(empty_node_mass_ratio<Real> *
                     static_cast<Real>(total_mass(particles_) / static_cast<double>(particles_.count()))),
         average_(scene, grid_),
@@ -329,12 +331,22 @@ class TimeStepper {
     return travel;
   }
 
-  /// Half sizes of cpGIMP [Kiriyama15, Eq. 14].
+  /// [m]; without a limit more than any half size can be.
+  static Real half_size_limit(const Scene& scene) {
+    if (!scene.domain_limit) return std::numeric_limits<Real>::max();
+    // A little less: in cells, it must not be rounded to more than one.
+    constexpr Real rounding = 4 * std::numeric_limits<Real>::epsilon();
+    return static_cast<Real>(*scene.domain_limit * scene.cell_size) * (1 - rounding);
+  }
+
+  /// Half sizes of cpGIMP [Kiriyama15, Eq. 14], up to the scene's limit.
   void grow(const Deformation<Dim, Value>& deformation, Eigen::Index slot) {
     if constexpr (SchemeTraits<scheme>::updates_half_size) {
       for (std::size_t a = 0; a < Dim; ++a) {
         Real* const half_size = &particles_.half_size[a][slot];
-        store(load<Value>(half_size) * (1 + deformation.strain_increment[a]), half_size);
+        const Value grown = load<Value>(half_size) * (1 + deformation.strain_increment[a]);
+        const Value largest(largest_half_size_);
+        store(select(grown < largest, grown, largest), half_size);
       }
     }
   }
@@ -474,7 +486,7 @@ class TimeStepper {
   StressUpdate<Dim, Real> update_stress_;
   std::vector<typename Laws<Dim, Real>::Any> laws_;
   UpdateOrder order_;
-  Real time_step_, flip_, damping_, empty_mass_;
+  Real time_step_, flip_, damping_, largest_half_size_, empty_mass_;
   bool has_fault_ = false, is_disordered_ = false;
   CellAverage<Dim, Real> average_;
   std::int64_t cell_crossings_ = 0, arrangements_ = 0;

@@ -275,7 +275,7 @@ Precision read_precision(const JsonPlace& place) {
 Scene read_scene(const JsonPlace& place) {
   place.allow_only({"dimension", "scheme", "update_order", "precision", "objectivity", "flip_fraction",
                     "damping", "grid", "bodies", "rigid_bodies", "surface_loads", "driven_motion",
-                    "sums_strain", "sums_work", "gravity", "time_step", "termination"});
+                    "sums_strain", "sums_work", "domain_limit", "gravity", "time_step", "termination"});
   Scene scene;
   scene.dimension = read_dimension(place["dimension"]);
   scene.scheme = place["scheme"].choice<Scheme>(
@@ -305,6 +305,7 @@ Scene read_scene(const JsonPlace& place) {
   }
   scene.sums_strain = place["sums_strain"].flag_or(false);
   scene.sums_work = place["sums_work"].flag_or(false);
+  if (const JsonPlace limit = place["domain_limit"]; limit.present()) scene.domain_limit = limit.number();
   scene.gravity = read_gravity(place["gravity"], axes_of(scene));
   scene.time_step = read_time_step(place["time_step"]);
   scene.termination = read_termination(place["termination"], scene.dimension);

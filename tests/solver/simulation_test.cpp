@@ -200,6 +200,31 @@ TEST(Simulation, EndsWithATypedOutcomeWhenADomainOutgrowsItsShapeFunction) {
   EXPECT_GT(simulation.outcome().value, scene.cell_size);
 }
 
+TEST(Simulation, KeepsDomainsWithinTheLimitOfTheScene) {
+  Scene scene = column_scene(Scheme::cpgimp);
+  scene.gravity.acceleration = {9.8, 0.0};
+  scene.gravity.level = 2000;
+  scene.grid_upper = {20.0, 0.0};
+  scene.termination = AtTime{1.0};
+  const Simulation free = run_to_end(scene);
+  ASSERT_EQ(free.outcome().ending, Ending::domain_too_large);
+  // Held domains are as large as they may be when free ones have outgrown the cell, and go on.
+  scene.termination = AtTime{free.time()};
+  for (const double limit : {0.55, 1.0}) {
+    scene.domain_limit = limit;
+    const Simulation held = run_to_end(scene);
+    EXPECT_TRUE(held.outcome().completed());
+    const ParticleFields particles = held.particles();
+    EXPECT_NEAR(*std::max_element(particles.half_size.begin(), particles.half_size.end()), limit * scene.cell_size,
+                1e-12);
+  }
+  // A limit that nothing reaches changes no bit.
+  scene.termination = AtTime{free.time() / 2};
+  const ParticleFields limited = run_to_end(scene).particles();
+  scene.domain_limit.reset();
+  EXPECT_EQ(limited.position, run_to_end(scene).particles().position);
+}
+
 TEST(Simulation, NeverEndsASilentNan) {
   // Far beyond the stable step everything is possible but a completed run with values that are not numbers.
   for (Scheme scheme : every_scheme) {

@@ -390,7 +390,8 @@ class PlainStepper {
         particles_.displacement[a][p] += travel;
         crosses = crosses || std::floor(in_cells(p, a)) != cell;
         if constexpr (scheme == Scheme::cpgimp)
-          particles_.half_size[a][p] *= 1 + strain_[static_cast<std::size_t>(p)][a];
+          particles_.half_size[a][p] =
+              std::min(particles_.half_size[a][p] * (1 + strain_[static_cast<std::size_t>(p)][a]), largest_half_size());
       }
       cell_crossings_ += crosses;
     }
@@ -398,6 +399,12 @@ class PlainStepper {
 
   // --- what can go wrong
   // ------------------------------------------------------------------------------------
+
+  /// What no domain grows beyond, as the solver rounds it [m].
+  Real largest_half_size() const {
+    if (!scene_.domain_limit) return std::numeric_limits<Real>::max();
+    return static_cast<Real>(*scene_.domain_limit * scene_.cell_size) * (1 - 4 * std::numeric_limits<Real>::epsilon());
+  }
 
   Real in_cells(Eigen::Index p, std::size_t axis) const {
     return (particles_.position[axis][p] - grid_.origin(static_cast<int>(axis))) * grid_.cells_per_length();

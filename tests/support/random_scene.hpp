@@ -51,6 +51,7 @@ class RandomScene {
     scene.flip_fraction = chance(0.5) ? 1.0 : between(0.0, 1.0);
     scene.sums_strain = chance(0.5);
     scene.sums_work = scene.flip_fraction < 1.0;
+    if (scene.sums_strain) scene.domain_limit = 0.51;
     scene.cell_size = 0.1;
     cells_ = {scene.dimension == 1 ? whole(61, 190) : whole(9, 37), whole(8, 19)};
     for (std::size_t a = 0; a < 2; ++a) {
