@@ -146,6 +146,14 @@ constexpr std::pair<const char*, const char*> metric_names[] = {
     {"element.volume", "error of volume against the closed form"},
     {"element.dilation", "error of dilation against the closed form"},
     {"element.limit", "error of the limit against the closed form"},
+    {"energy_balance.kinetic", "share of the energy still in motion"},
+    {"energy_balance.dissipated", "share of the energy in plastic work"},
+    {"energy_balance.numerical_loss", "share of the energy lost by the numerics"},
+    {"collapse.aspect_ratio", "aspect ratio <i>H</i><sub>0</sub>/<i>L</i><sub>0</sub>"},
+    {"collapse.run_out", "run-out (<i>L</i><sub>f</sub> − <i>L</i><sub>0</sub>)/<i>L</i><sub>0</sub>"},
+    {"collapse.deposit_height", "height of the deposit <i>H</i><sub>f</sub>/<i>L</i><sub>0</sub>"},
+    {"collapse.area_change", "change of area"},
+    {"load_curve.bend_pressure", "ultimate pressure"},
 };
 
 const Named* named_reference(const std::string& reference) {

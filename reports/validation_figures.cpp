@@ -952,7 +952,11 @@ void add_measured_lines(FieldPlot& plot, const vv::CaseVerdict& verdict, const v
     const std::size_t abscissa = file.abscissa.value_or(0);
     const std::string title = escaped(file.title.empty() ? spaced(file.id) : file.title),
                       source = source_of(file);
-    FieldLine line{"measured: " + (source.empty() ? title : title + " " + source), measured_look(k), {}, {}};
+    FieldLine line{
+        "measured " + spaced(measurement->curve) + ": " + (source.empty() ? title : title + " " + source),
+        measured_look(k),
+        {},
+        {}};
     const bool drawable = is_of_places(file, abscissa, measurement->column);
     if (file.rows.empty() || !drawable) {
       line.label = drawable ? capitalised(empty_slot(file)) : title + ": no curve of places, not drawn";

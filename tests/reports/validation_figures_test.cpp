@@ -318,7 +318,7 @@ TEST(MeasuredLines, StandOnTheLastMomentInMetres) {
   ASSERT_EQ(figure.panels[1].lines.size(), 1U);
   ASSERT_EQ(figure.panels[3].lines.size(), 1U);
   const FieldLine& line = figure.panels[1].lines[0];
-  EXPECT_EQ(line.label, "measured: Surface of a collapsed heap [Demo00, Figure 3]");
+  EXPECT_EQ(line.label, "measured free surface: Surface of a collapsed heap [Demo00, Figure 3]");
   EXPECT_DOUBLE_EQ(line.x.front(), 0.2);
   EXPECT_DOUBLE_EQ(line.y.front(), support::demo::surface(0.2));
   ASSERT_EQ(figure.absent_lines.size(), 1U);
