@@ -761,8 +761,9 @@ std::vector<PlotCurve> published_lines(const std::vector<Published>& published, 
     }
     const std::string title = escaped(file.title.empty() ? spaced(file.id) : file.title),
                       source = source_of(file);
+    const std::string brief = escaped(file.citation.empty() ? spaced(file.id) : file.citation);
     lines.push_back(
-        {fitted(source.empty() ? title : title + " " + source, escaped(spaced(file.id)), width, notes), look,
+        {fitted(source.empty() ? title : title + " " + source, brief, width, notes), look,
          scaled(file.column(published[k].x), x_factor), scaled(file.column(published[k].y), y_factor), 1});
   }
   return lines;

@@ -16,6 +16,7 @@
 #include "vv/case_schema.hpp"
 #include "vv/field_map.hpp"
 #include "vv/gates.hpp"
+#include "vv/measurement.hpp"
 #include "vv/metamorphic.hpp"
 #include "vv/norms.hpp"
 #include "vv/record.hpp"
@@ -153,6 +154,21 @@ TEST(Documentation, ReadingsFitAFooting) {
   const Case definition = parse_case(footing.dump(), "prandtl.json");
   EXPECT_EQ(definition.readings.at(0).at, 0.025);
   EXPECT_EQ(definition.readings.at(0).over, "limit_analysis");
+}
+
+TEST(Documentation, MeasurementsFitAFooting) {
+  std::ifstream stream(root / "vv" / "cases" / "prandtl.json", std::ios::binary);
+  Json footing = Json::parse(std::string(std::istreambuf_iterator<char>(stream), {}));
+  footing["measurements"] = Json::parse(marked_block("measurements of a footing"));
+  footing["gates"][0]["metric"] = "measured.experiment.inside";
+  const Case definition = parse_case(footing.dump(), "prandtl.json");
+  EXPECT_EQ(definition.measurements.at(0).curve, "pressure");
+}
+
+TEST(Documentation, CurveFileIsOne) {
+  const CurveFile curve = parse_curve_file(marked_block("curve file"), "plate_load.json");
+  EXPECT_EQ(curve.rows.size(), 4u);
+  for (const ComparisonMetric& metric : comparison_metrics()) EXPECT_TRUE(names(page(), metric.name)) << metric.name;
 }
 
 TEST(Documentation, QuotesTheMessageOfABadValue) {
