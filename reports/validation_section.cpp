@@ -137,8 +137,11 @@ std::string tally_of(const vv::CaseVerdict& verdict, const std::string& measurem
   for (const vv::RunVerdict& run : verdict.runs)
     if (const vv::CurveComparison* found = comparison_of(run, measurement)) ++counts[found->agreement];
   std::string tally;
-  for (const auto& [agreement, count] : counts)
-    tally += (tally.empty() ? "" : " ") + chip_of(agreement) + (count > 1 ? fmt::format(" {} ×", count) : "");
+  for (const auto& [agreement, count] : counts) {
+    if (!tally.empty()) tally += ' ';
+    tally += chip_of(agreement);
+    if (count > 1) tally += fmt::format(" {} ×", count);
+  }
   return tally;
 }
 
