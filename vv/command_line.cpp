@@ -105,25 +105,32 @@ double closeness(const GateResult& gate) {
   return std::isfinite(room) ? std::abs(room) : std::abs(gate.value - gate.threshold);
 }
 
-/// The rows of one gate: every failure, and the good results as one row that shows the closest of them.
+/// One row for several results of a gate, in the words of the one that is shown.
+Row row_of_several(const std::vector<const GateResult*>& results, const GateResult& shown, const char* which) {
+  return row_of(shown, results.size() == 1 ? shown.scope
+                                           : fmt::format("{} x, {}: {}", results.size(), which, shown.scope));
+}
+
+/// The rows of one gate: every failure, the good results as one row that shows the closest of them, and those that
+/// wait for a measurement as one.
 std::vector<Row> rows_of(const std::vector<const GateResult*>& results) {
   std::vector<Row> rows;
-  std::vector<const GateResult*> good;
+  std::vector<const GateResult*> good, waiting;
   for (const GateResult* result : results) {
-    if (result->good() && !result->waits()) {
+    if (result->waits())
+      waiting.push_back(result);
+    else if (result->good())
       good.push_back(result);
-    } else {
+    else
       rows.push_back(row_of(*result, result->scope));
-    }
   }
-  if (good.empty()) return rows;
-  const GateResult* shown = good.front();
-  for (const GateResult* result : good) {
-    if (closeness(*result) < closeness(*shown)) shown = result;
+  if (!good.empty()) {
+    const GateResult* shown = good.front();
+    for (const GateResult* result : good)
+      if (closeness(*result) < closeness(*shown)) shown = result;
+    rows.push_back(row_of_several(good, *shown, "closest"));
   }
-  const std::string scope =
-      good.size() == 1 ? shown->scope : fmt::format("{} x, closest: {}", good.size(), shown->scope);
-  rows.push_back(row_of(*shown, scope));
+  if (!waiting.empty()) rows.push_back(row_of_several(waiting, *waiting.front(), "first"));
   return rows;
 }
 
