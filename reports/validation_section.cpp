@@ -15,7 +15,7 @@ namespace {
 
 using data = PageData;
 
-std::string percent(double ratio) { return number_markup(100.0 * ratio, 2) + " %"; }
+std::string percent(double ratio) { return number_markup(100.0 * ratio, 2) + "\u00a0%"; }
 
 std::string chip_of(vv::Agreement agreement) {
   switch (agreement) {
@@ -61,17 +61,8 @@ std::string caveats_of(const vv::CurveFile& file, std::size_t column) {
   return caveats;
 }
 
-data comparison_row(const vv::CurveComparison& found, const vv::Measurement& measurement,
-                    const std::string& runs) {
-  data row = object({{"measurement", measurement.id},
-                     {"title", measurement.file->title},
-                     {"source", source_of(*measurement.file)},
-                     {"runs", runs},
-                     {"chip", chip_of(found.agreement)},
-                     {"lack", found.lack},
-                     {"caveats", caveats_of(*measurement.file, measurement.column)},
-                     {"asked", percent(measurement.accuracy)},
-                     {"reason", measurement.reason}});
+data comparison_row(const vv::CurveComparison& found, const std::string& runs) {
+  data row = object({{"runs", runs}, {"chip", chip_of(found.agreement)}, {"lack", found.lack}});
   if (!found.lack.empty()) return row;
   row.set("numbers", flag(true));
   for (const auto& [name, value] :
@@ -92,18 +83,28 @@ const vv::CurveComparison* comparison_of(const vv::RunVerdict& run, const std::s
   return nullptr;
 }
 
-data comparison_rows(const vv::CaseVerdict& verdict) {
-  data rows = list();
+/// One entry a measurement, with a row for every run that was compared; one row if it is missing.
+data comparisons_of(const vv::CaseVerdict& verdict) {
+  data entries = list();
   for (const vv::Measurement& measurement : verdict.definition.measurements) {
+    data rows = list();
     for (const vv::RunVerdict& run : verdict.runs) {
       const vv::CurveComparison* found = comparison_of(run, measurement.id);
       if (!found) continue;
       const bool missing = found->agreement == vv::Agreement::no_measurement;
-      rows << comparison_row(*found, measurement, missing ? "all runs" : name_of_run(run.parameters));
+      rows << comparison_row(*found, missing ? "all runs" : name_of_run(run.parameters));
       if (missing) break;  // every run lacks the same
     }
+    data entry = object({{"id", measurement.id},
+                         {"title", measurement.file->title},
+                         {"source", source_of(*measurement.file)},
+                         {"caveats", caveats_of(*measurement.file, measurement.column)},
+                         {"asked", percent(measurement.accuracy)},
+                         {"reason", measurement.reason}});
+    entry.set("rows", rows);
+    entries << entry;
   }
-  return rows;
+  return entries;
 }
 
 data paired_rows(const vv::CaseVerdict& verdict) {
@@ -167,20 +168,21 @@ data curve_file_row(const vv::CurveFile& file, const std::set<std::string>& case
                      {"calibration", file.used_for_calibration ? "yes" : "no"},
                      {"hash", file.hash},
                      {"cases", users}});
-  row.set("notes", notes);
+  set_list(row, "notes", notes);
   return row;
 }
 
 }  // namespace
 
 void set_validation(PageData& section, const vv::CaseVerdict& verdict) {
-  set_list(section, "comparisons", comparison_rows(verdict));
+  set_list(section, "comparisons", comparisons_of(verdict));
   set_list(section, "paired", paired_rows(verdict));
 }
 
 void set_validation_overview(PageData& page, const vv::CampaignVerdict& verdict) {
   data validations = list(), paired = list(), files = list();
   std::map<std::string, std::pair<const vv::CurveFile*, std::set<std::string>>> used;
+  std::set<std::pair<std::string, std::string>> formulas;
   for (const vv::CaseVerdict& c : verdict.cases) {
     for (const auto& file : vv::curve_files_of(c.definition)) {
       used[file->id].first = file.get();
@@ -194,7 +196,13 @@ void set_validation_overview(PageData& page, const vv::CampaignVerdict& verdict)
                              {"tally", tally_of(c, measurement.id)}});
     }
     const data rows = paired_rows(c);
-    for (const data& row : rows.list_value()) paired << row;
+    for (std::size_t k = 0; k < c.pairs.size(); ++k) {
+      const vv::PairedPrediction& request = c.definition.pairs[k];
+      // A formula says the same in every case that asks it.
+      const bool told =
+          !request.formula.empty() && !formulas.insert({request.formula, request.file->id}).second;
+      if (!told) paired << rows.list_value()[k];
+    }
   }
   for (const auto& [id, entry] : used) files << curve_file_row(*entry.first, entry.second);
   set_list(page, "validations", validations);

@@ -531,7 +531,7 @@ std::string one_line(std::string text) {
 std::vector<std::shared_ptr<const CurveFile>> curve_files_of(const Case& definition) {
   std::vector<std::shared_ptr<const CurveFile>> all;
   const auto add = [&](const std::shared_ptr<const CurveFile>& file) {
-    const auto same = [&](const auto& known) { return known->file == file->file; };
+    const auto same = [&](const auto& known) { return known->id == file->id && known->file == file->file; };
     if (std::none_of(all.begin(), all.end(), same)) all.push_back(file);
   };
   for (const Measurement& measurement : definition.measurements) add(measurement.file);

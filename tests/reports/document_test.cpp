@@ -2,11 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <limits>
 
+#include "tests/support/demo_validation.hpp"
 #include "tests/support/demo_verdict.hpp"
 
 namespace mpm::reports {
@@ -155,6 +157,78 @@ TEST(Document, AClaimShowsWhatItsGatesMeasuredAndTheirBound) {
   EXPECT_TRUE(has(report_html(campaign, {}), "at most 0.02; 1 not measured"));
   levels.definition.claims[0].gates = {"oscillation_control"};
   EXPECT_TRUE(has(report_html(campaign, {}), "not at most 0.01")) << "a control must violate its bound";
+}
+
+// ---- validation
+
+vv::CampaignVerdict measured_campaign() {
+  vv::CampaignVerdict campaign;
+  campaign.cases = {support::demo_collapse(), support::demo_pairs()};
+  vv::CaseVerdict& collapse = campaign.cases[0];
+  vv::GateResult live;
+  live.id = "surface";
+  live.metric = "measured.final_surface.inside";
+  live.value = 1.0;
+  live.op = ">=";
+  live.threshold = 0.95;
+  live.status = vv::GateStatus::pass;
+  vv::GateResult waiting = live;
+  waiting.id = "other";
+  waiting.metric = "measured.other_surface.inside";
+  waiting.value = std::nan("");
+  waiting.status = vv::GateStatus::no_measurement;
+  waiting.detail = "the slot is empty";
+  collapse.runs[1].gates = {live, waiting};
+  collapse.definition.claims = {{.text = "The live one.", .gates = {"surface"}, .remark = ""},
+                                {.text = "The waiting one.", .gates = {"surface", "other"}, .remark = ""}};
+  return campaign;
+}
+
+TEST(Document, SaysWhatBecameOfEveryComparison) {
+  const std::string html = report_html(measured_campaign(), {});
+  EXPECT_TRUE(has(html, "Beside measurements"));
+  EXPECT_TRUE(has(html, "model error detected"));
+  EXPECT_TRUE(has(html, "validated at this level"));
+  EXPECT_TRUE(has(html, "71\u00a0%")) << "the share inside 2 u_val of the run that is off";
+  EXPECT_TRUE(has(html, "0.043")) << "its comprehensive error";
+  EXPECT_TRUE(has(html, "u_D is a lower bound")) << "the experiment's uncertainty is not stated";
+}
+
+TEST(Document, AWaitingGateIsNeitherGoodNorBad) {
+  const vv::CampaignVerdict campaign = measured_campaign();
+  ASSERT_FALSE(campaign.failed());
+  const std::string html = report_html(campaign, {});
+  EXPECT_TRUE(has(html, "1 of 2 gates hold"));
+  EXPECT_TRUE(has(html, "1 gate waits for a measurement that is missing"));
+  EXPECT_FALSE(has(html, "What failed"));
+  EXPECT_FALSE(has(html, "What was not measured"));
+  const std::size_t live = html.find("The live one."), waiting = html.find("The waiting one.");
+  EXPECT_TRUE(has(html.substr(live, waiting - live), ">holds<"));
+  EXPECT_TRUE(has(html.substr(waiting, 400), "not tested: no measurement"));
+}
+
+TEST(Document, SaysWhereEveryMeasuredNumberComesFrom) {
+  const std::string html = report_html(measured_campaign(), {});
+  EXPECT_TRUE(has(html, "Measured and published numbers"));
+  EXPECT_TRUE(has(html, "<code>demo_surface</code>, Demo00, Figure 3"));
+  EXPECT_TRUE(has(html, "A surface nobody has &lt;measured&gt;"));
+  EXPECT_TRUE(has(html, "Origin: missing"));
+  EXPECT_TRUE(has(html, "read to 1 mm, measured to not stated")) << "in the unit of the column";
+  EXPECT_FALSE(has(html, "No measured curve enters this report"));
+  EXPECT_TRUE(has(report_html(support::demo_campaign(), {}), "No measured curve enters this report"));
+}
+
+TEST(Document, TellsOfAFormulaOnceHoweverManyCasesAskIt) {
+  vv::CampaignVerdict campaign = measured_campaign();
+  ASSERT_FALSE(campaign.cases[1].definition.pairs.empty());
+  campaign.cases[1].definition.pairs[0].formula = "exact";
+  campaign.cases.push_back(campaign.cases[1]);
+  const std::string html = report_html(campaign, {});
+  const std::size_t begin = html.find("id=\"validation\""), end = html.find("</section>", begin);
+  const std::string overview = html.substr(begin, end - begin), title = campaign.cases[1].pairs[0].title;
+  const std::size_t first = overview.find(title);
+  ASSERT_NE(first, std::string::npos);
+  EXPECT_EQ(overview.find(title, first + 1), std::string::npos);
 }
 
 TEST(Document, EscapesWhatTheVerdictSays) {
