@@ -1,9 +1,9 @@
 #include "vv/measurement_reader.hpp"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
+#include "reference/bearing_capacity.hpp"
 #include "vv/field_map.hpp"
 #include "vv/scene_reader.hpp"
 #include "vv/sweep.hpp"
@@ -11,7 +11,12 @@
 namespace mpm::vv {
 namespace {
 
-constexpr std::array formulas{"exact", "terzaghi", "meyerhof", "meyerhof_with_depth"};
+std::vector<std::string> formula_names() {
+  std::vector<std::string> names;
+  for (const reference::CapacityFormula& formula : reference::capacity_formulas())
+    names.emplace_back(formula.name);
+  return names;
+}
 
 std::string dimension_of_field(const std::string& quantity) {
   const std::vector<FieldQuantity>& fields = field_catalogue();
@@ -106,7 +111,7 @@ PairedPrediction read_pair(const JsonPlace& place, const Case& read, const std::
   if (const JsonPlace formula = place["formula"]; formula.present()) {
     for (const char* key : {"metric", "across", "where"})
       if (place[key].present()) place[key].refuse("no key \"" + std::string(key) + "\" beside a formula");
-    pairs.formula = formula.one_of({formulas.begin(), formulas.end()});
+    pairs.formula = formula.one_of(formula_names());
     return pairs;
   }
   pairs.metric = place["metric"].one_of(metrics);
