@@ -216,6 +216,10 @@ const char* name_of(Agreement agreement) {
   return "not compared";
 }
 
+std::string lack_of_measurement(const CurveFile& slot) {
+  return "no measurement: " + slot.id + ".json is an empty slot";
+}
+
 CurveDistance curve_distance(const Values& abscissa, const Values& measured, const Values& simulated) {
   const double dd = integral(abscissa, [&](std::size_t k) { return measured[k] * measured[k]; });
   const double ss = integral(abscissa, [&](std::size_t k) { return simulated[k] * simulated[k]; });
@@ -236,7 +240,7 @@ CurveComparison compare(const CurveFile& file, std::size_t column, const Compare
   CurveComparison found;
   if (file.missing) {
     found.agreement = Agreement::no_measurement;
-    found.lack = "no measurement: reference/curves/" + file.id + ".json is an empty slot";
+    found.lack = lack_of_measurement(file);
     return found;
   }
   if (!curves.simulated) return lacking(std::move(found), "the run has no such curve");

@@ -59,6 +59,9 @@ struct CurveComparison {
   double level = 0.0;  ///< root mean square of 2 u_val over the largest measured magnitude [-]
 };
 
+/// Why there is nothing to compare with: the curve file is an empty slot.
+std::string lack_of_measurement(const CurveFile& slot);
+
 /// Share of the points that must lie within 2 u_val, where 2 sigma hold 95 % of normal errors.
 inline constexpr double share_inside = 0.95;
 /// Least overlap: a curve that covers less has not been compared.

@@ -124,7 +124,7 @@ PairsVerdict judged(const PairedPrediction& request, const CaseVerdict& verdict)
   found.dimension = request.file->columns[request.column].dimension;
   if (request.file->missing) {
     found.missing = true;
-    found.lack = "no measurement: reference/curves/" + request.file->id + ".json is an empty slot";
+    found.lack = lack_of_measurement(*request.file);
     return found;
   }
   try {

@@ -209,7 +209,7 @@ TEST(Comparison, WithASlotWaits) {
   const Curve run = run_curve(0.0);
   const CurveComparison found = compare(slot, 1, {.simulated = &run}, 1.0);
   EXPECT_EQ(found.agreement, Agreement::no_measurement);
-  EXPECT_EQ(found.lack, "no measurement: reference/curves/line.json is an empty slot");
+  EXPECT_EQ(found.lack, "no measurement: line.json is an empty slot");
 }
 
 // ---- many pairs

@@ -114,7 +114,7 @@ TEST_F(FilledSlot, WaitsWhileItIsEmpty) {
   const GateResult gate = named(verdict, "measured");
   EXPECT_EQ(gate.status, GateStatus::no_measurement);
   EXPECT_TRUE(std::isnan(gate.value));
-  EXPECT_EQ(gate.detail, "no measurement: reference/curves/plate.json is an empty slot");
+  EXPECT_EQ(gate.detail, "no measurement: plate.json is an empty slot");
   EXPECT_EQ(verdict.status, CaseStatus::pass) << "an empty slot fails nothing";
   CampaignVerdict campaign;
   campaign.cases = {verdict};
