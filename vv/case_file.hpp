@@ -186,6 +186,26 @@ struct PairedPrediction {
   std::vector<Selector> where;
 };
 
+/// Runs as configurations of a problem, weighed by error and cost. The error is a metric or, with `curve`, the
+/// distance of a curve from that of the finest runs.
+struct TradeRequest {
+  std::string title;                  ///< what the error is of, for a person: "stress of the column"
+  std::vector<std::string> problems;  ///< axes of the sweep whose values are other problems, not other configurations
+  std::string metric;                 ///< name of the error; empty with a curve
+  std::string curve;                  ///< name of a curve of the runs; empty with a metric
+  std::vector<std::vector<Selector>> finest;  ///< of a curve: the runs of each family that stand for the truth, two at least
+  double from = 0.0, up_to = 0.0;     ///< of a curve: the stretch of abscissae
+  double within = 0.0;                ///< of a curve: half-width of the mean that it is read with; 0 for none
+  std::string family;                 ///< axis whose values have colours of their own; may be empty
+  std::vector<double> asked;          ///< errors that a table of advice is written for, from large to small [-]
+};
+
+/// Advice taken from another case and put to the test by the runs of this one.
+struct AdviceTest {
+  std::string of;             ///< id of the case whose trade gives the advice
+  std::vector<double> asked;  ///< errors asked for [-]
+};
+
 /// The part of a two-dimensional scene that a figure shows.
 struct ViewRequest {
   PerAxis lower{}, upper{};  ///< [m], lower below upper along both axes
@@ -194,7 +214,7 @@ struct ViewRequest {
 /// A picture the report draws from the verdict of the case.
 struct FigureRequest {
   std::string id;
-  std::string kind;      ///< profiles, convergence, bars, history, curves, fields, model, decomposition, comparison, pairs, trend
+  std::string kind;      ///< profiles, convergence, bars, history, curves, fields, model, decomposition, comparison, pairs, trend, trade
   std::string caption;
   std::string panels;    ///< swept parameter that separates panels; may be empty
   std::string series;    ///< swept parameter that separates curves; may be empty
@@ -211,6 +231,7 @@ struct FigureRequest {
   std::vector<double> stages = {};  ///< curves of pressure: settlements of note, from small to large [m]
   std::vector<std::string> measurements = {};  ///< comparison: compared; fields: drawn on top as lines. Ids of the case's
   std::vector<std::string> pairs = {};         ///< pairs: ids of the case's paired predictions
+  std::string trade = {};                      ///< trade: title of one of the case's trades
   std::string abscissa = {};                   ///< trend: the metric along x; `metrics` are along y, `over` the axis
   /// Trend: published curves drawn beside the runs.
   std::vector<std::shared_ptr<const CurveFile>> published = {};
@@ -220,6 +241,8 @@ struct FigureRequest {
 struct RunRequest {
   std::vector<std::pair<std::string, Json>> parameters;  ///< parameter and value of each axis, in sweep order
   Json scene_text;  ///< the case's /scene or /element, the parameters put in
+  /// What each axis of the sweep changes in this run, in sweep order: {"set": {pointer: value}, "remove": [pointer]}.
+  std::vector<Json> changes = {};
   Scene scene;      ///< checked; without bodies for an element test
   std::shared_ptr<const reference::ManufacturedSolution> motion = nullptr;  ///< what drives the scene; may be null
   std::optional<ElementTest> element = std::nullopt;  ///< checked; stands in place of the scene
@@ -245,6 +268,8 @@ struct Case {
   std::vector<Measurement> measurements;
   std::vector<PairedPrediction> pairs;
   std::vector<Reading> readings;
+  std::vector<TradeRequest> trades;
+  std::optional<AdviceTest> advice;
   std::vector<Gate> gates;
   std::vector<FigureRequest> figures;
   std::filesystem::path file;

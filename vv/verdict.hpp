@@ -9,6 +9,7 @@
 #include "vv/grid_convergence.hpp"
 #include "vv/measurement.hpp"
 #include "vv/record.hpp"
+#include "vv/trade.hpp"
 
 namespace mpm::vv {
 
@@ -102,6 +103,7 @@ struct CaseVerdict {
   std::vector<RunVerdict> runs;
   std::vector<SeriesVerdict> series;
   std::vector<PairsVerdict> pairs;  ///< in the order of the case's
+  std::vector<TradeVerdict> trades;  ///< in the order of the case's, one a problem
   std::vector<GateResult> gates;  ///< on pairs, and those that found nothing to judge: every one of these a failure
 };
 
