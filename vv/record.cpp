@@ -433,10 +433,10 @@ class Recorder {
     return record;
   }
 
-  /// The factor by which a ramp has changed a body's density. The particles carry the density of the last
+  /// The factor by which a ramp has changed a body's mass. The particles carry the density of the last
   /// step's beginning.
   double growth_of(const Body& body) const {
-    if (!body.density_ramp || simulation_.steps() == 0) return 1.0;
+    if (!body.density_ramp || body.inertia || simulation_.steps() == 0) return 1.0;
     const double time = static_cast<double>(simulation_.steps() - 1) * simulation_.time_step();
     return body.density_at(time) / body.density;
   }

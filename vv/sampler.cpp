@@ -72,6 +72,11 @@ double sum_over_body(const ParticleFields& fields, std::size_t body,
   return sum;
 }
 
+/// The mass that has weight over the one that resists acceleration.
+double weight_over_inertia(const Body& body, double time) {
+  return body.inertia ? body.density_at(time) / *body.inertia : 1.0;
+}
+
 double mass_of_body(const ParticleFields& fields, std::size_t body) {
   return sum_over_body(fields, body, [&](std::size_t p) { return fields.mass[p]; });
 }
@@ -186,9 +191,11 @@ Measure measure_of_rigid_body(const HistoryProbe& probe, std::size_t component, 
 Measure measure_of_body(const HistoryProbe& probe, std::size_t component, const Scene& scene) {
   const std::size_t body = index_of(scene.bodies, probe);
   if (probe.quantity == "weight" || probe.quantity == "load") {
-    return [body, &gravity = scene.gravity, axis = axes_of(scene) - 1](const Observation& now) {
+    return [body, &scene, axis = axes_of(scene) - 1](const Observation& now) {
+      const Gravity& gravity = scene.gravity;
       const double acceleration = gravity.acceleration[axis] * gravity.level * gravity.fraction(now.time());
-      return mass_of_body(now.particles(), body) * std::abs(acceleration);
+      return mass_of_body(now.particles(), body) * weight_over_inertia(scene.bodies[body], now.time()) *
+             std::abs(acceleration);
     };
   }
   if (probe.quantity != "displacement" && probe.quantity != "velocity") refuse(probe);
@@ -260,7 +267,7 @@ double potential_energy(const Scene& scene, const ParticleFields& fields) {
   double sum = 0.0;
   for (std::size_t p = 0; p < fields.mass.size(); ++p) {
     for (std::size_t axis = 0; axis < dimension; ++axis) {
-      sum -= fields.mass[p] * scene.gravity.acceleration[axis] * scene.gravity.level *
+      sum -= fields.mass[p] * weight_over_inertia(scene.bodies[fields.body[p]], 0.0) * scene.gravity.acceleration[axis] * scene.gravity.level *
              fields.displacement[p * dimension + axis];
     }
   }

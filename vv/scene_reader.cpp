@@ -100,10 +100,18 @@ Ring read_ring(const JsonPlace& place, std::size_t axes) {
 }
 
 DensityRamp read_density_ramp(const JsonPlace& place) {
-  place.allow_only({"final_density", "start", "duration"});
-  return {.final_density = place["final_density"].quantity(QuantityKind::density),
-          .start = place["start"].quantity_or(QuantityKind::time, 0.0),
-          .duration = place["duration"].quantity(QuantityKind::time)};
+  place.allow_only({"final_density", "start", "duration", "then"});
+  DensityRamp ramp{.start = place["start"].quantity_or(QuantityKind::time, 0.0),
+                   .stages = {{.density = place["final_density"].quantity(QuantityKind::density),
+                               .duration = place["duration"].quantity(QuantityKind::time)}}};
+  if (const JsonPlace then = place["then"]; then.present()) {
+    for (const JsonPlace& stage : then.some_elements()) {
+      stage.allow_only({"density", "duration"});
+      ramp.stages.push_back({.density = stage["density"].quantity(QuantityKind::density),
+                             .duration = stage["duration"].quantity(QuantityKind::time)});
+    }
+  }
+  return ramp;
 }
 
 enum class InitialStressType { uniform, geostatic };
@@ -125,7 +133,7 @@ InitialStress read_initial_stress(const JsonPlace& place, std::size_t axes) {
 
 Body read_body(const JsonPlace& place, std::size_t axes) {
   place.allow_only(keys_of(axes,
-                           {"name", "lower", "upper", "particles_per_cell", "density", "density_ramp",
+                           {"name", "lower", "upper", "particles_per_cell", "density", "density_ramp", "inertia",
                             "velocity", "initial_stress", "material", "locking_control"},
                            {"ring"}));
   Body body;
@@ -141,6 +149,8 @@ Body read_body(const JsonPlace& place, std::size_t axes) {
   if (const JsonPlace ring = place["ring"]; ring.present()) body.ring = read_ring(ring, axes);
   if (const JsonPlace ramp = place["density_ramp"]; ramp.present())
     body.density_ramp = read_density_ramp(ramp);
+  if (const JsonPlace inertia = place["inertia"]; inertia.present())
+    body.inertia = inertia.quantity(QuantityKind::density);
   if (const JsonPlace stress = place["initial_stress"]; stress.present()) {
     body.initial_stress = read_initial_stress(stress, axes);
   }
