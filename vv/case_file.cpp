@@ -13,6 +13,7 @@
 #include "vv/norms.hpp"
 #include "vv/probe_reader.hpp"
 #include "vv/scene_reader.hpp"
+#include "vv/sufficient_model.hpp"
 #include "vv/sweep.hpp"
 #include "vv/trade_reader.hpp"
 
@@ -518,6 +519,8 @@ void read_parts(Case& read) {
   if (const JsonPlace figures = place["figures"]; figures.present()) {
     for (const JsonPlace& figure : figures.elements()) read.figures.push_back(read_figure(figure, read));
   }
+  // Last, since it depends on all that the case asks for, and what it asks for is checked against the scene as written.
+  for (RunRequest& run : read.runs) choose_model(read, run);
 }
 
 /// The second, independent net: what the published schema refuses is refused, whatever the reader above

@@ -11,6 +11,7 @@
 #include "solver/scene.hpp"
 #include "vv/curve_file.hpp"
 #include "vv/element_test.hpp"
+#include "vv/model_choice.hpp"
 
 namespace mpm::reference {
 class ManufacturedSolution;
@@ -243,10 +244,13 @@ struct RunRequest {
   Json scene_text;  ///< the case's /scene or /element, the parameters put in
   /// What each axis of the sweep changes in this run, in sweep order: {"set": {pointer: value}, "remove": [pointer]}.
   std::vector<Json> changes = {};
-  Scene scene;      ///< checked; without bodies for an element test
+  Scene scene;      ///< checked, and what is simulated: see `model`; without bodies for an element test
   std::shared_ptr<const reference::ManufacturedSolution> motion = nullptr;  ///< what drives the scene; may be null
   std::optional<ElementTest> element = std::nullopt;  ///< checked; stands in place of the scene
   int threads = 1;                                    ///< share the work of each step; they change no bit
+  ModelRequest model_request = {};
+  std::vector<ModelChoice> model = {};         ///< how `scene` came from what is written, and why
+  std::optional<double> width = std::nullopt;  ///< of a strip of which `scene` is the column [m]
 };
 
 /// One case file, checked: every run it asks for can start.

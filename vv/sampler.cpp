@@ -279,9 +279,10 @@ double stress_work(const ParticleFields& fields) {
   return std::accumulate(fields.stress_work.begin(), fields.stress_work.end(), 0.0);
 }
 
-Sampler::Sampler(const HistoryProbe& probe, const Scene& scene, const Observation& start)
+Sampler::Sampler(const HistoryProbe& probe, const Scene& scene, const Observation& start, double factor)
     : history_{.id = probe.id, .quantity = probe.quantity, .time = {}, .value = {}},
       every_(probe.every),
+      factor_(factor),
       measure_(measure_of(probe, scene, start)) {
   if (!(every_ > 0.0))
     throw std::invalid_argument("the sampling interval of a history probe must be positive");
@@ -289,7 +290,7 @@ Sampler::Sampler(const HistoryProbe& probe, const Scene& scene, const Observatio
 
 void Sampler::sample(const Observation& now, double time_step) {
   if (!history_.time.empty() && history_.time.back() == now.time()) return;
-  history_.value.push_back(measure_(now));
+  history_.value.push_back(factor_ * measure_(now));
   history_.time.push_back(now.time());
   next_ = every_ * (std::floor((now.time() + 0.5 * time_step) / every_) + 1.0);
 }

@@ -281,11 +281,26 @@ Precision read_precision(const JsonPlace& place) {
   return place.choice<Precision>({{"double", Precision::float64}, {"float", Precision::float32}});
 }
 
+Decision read_decision(const JsonPlace& place) {
+  return place.choice<Decision>({{"automatic", Decision::automatic}, {"as_written", Decision::as_written}});
+}
+
+ModelRequest read_model(const JsonPlace& place) {
+  ModelRequest request;
+  if (!place.present()) return request;
+  place.allow_only({"dimension", "precision"});
+  if (const JsonPlace dimension = place["dimension"]; dimension.present())
+    request.dimension = read_decision(dimension);
+  if (const JsonPlace precision = place["precision"]; precision.present())
+    request.precision = read_decision(precision);
+  return request;
+}
+
 /// The scene as written: types, keys and units are right, but the values may be impossible.
 Scene read_scene(const JsonPlace& place) {
   place.allow_only({"dimension", "scheme", "update_order", "precision", "objectivity", "flip_fraction",
                     "damping", "grid", "bodies", "rigid_bodies", "surface_loads", "driven_motion",
-                    "sums_strain", "sums_work", "domain_limit", "gravity", "time_step", "termination"});
+                    "model", "sums_strain", "sums_work", "domain_limit", "gravity", "time_step", "termination"});
   Scene scene;
   scene.dimension = read_dimension(place["dimension"]);
   scene.scheme = place["scheme"].choice<Scheme>(
@@ -557,6 +572,7 @@ CheckedSubject read_checked(const Subject& subject) {
     return checked;
   }
   checked.scene = read_scene(place);
+  checked.model = read_model(place["model"]);
   require_possible(checked.scene, subject.pointer);
   checked.motion = read_solution(place, checked.scene);
   checked.scene.driven_motion = driven_motion_of(checked.motion);
