@@ -97,7 +97,11 @@ class RandomScene {
                          chance(0.5) ? 0.0 : radius / 3,
                          radius};
       }
-      if (chance(0.2)) body.density_ramp = DensityRamp{body.density * between(0.6, 1.6), 0.02, 0.1};
+      if (chance(0.2)) {
+        const double first = body.density * between(0.6, 1.6), last = body.density * between(0.6, 1.6);
+        body.density_ramp = DensityRamp{0.02, {{first, 0.03}, {last, 0.07}}};
+      }
+      if (chance(0.2)) body.inertia = body.density * between(0.8, 1.5);
       scene.bodies.push_back(body);
     }
   }
@@ -148,6 +152,7 @@ class RandomScene {
   }
 
   static void drive(Scene& scene) {
+    for (Body& body : scene.bodies) body.inertia.reset();
     scene.driven_motion =
         DrivenMotion{[](const PerAxis& place, double time) {
                        return PerAxis{std::sin(3 * place[0] + time), std::cos(2 * place[1])};
