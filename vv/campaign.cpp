@@ -192,8 +192,9 @@ class Pool {
       updates += steps;
       progressed += done_[i] ? jobs_[i]->estimate : std::min(steps, jobs_[i]->estimate);
     }
-    progress.draw(progressed / estimated, fmt::format("{}/{} runs  {:.2g} particle-updates/s", finished_.load(), jobs_.size(),
-                                                      updates / std::max(progress.elapsed(), 1e-3)));
+    progress.draw(progressed / estimated,
+                  fmt::format("{}/{} runs  {:.2g} particle-updates/s", finished_.load(), jobs_.size(),
+                              updates / std::max(progress.elapsed(), 1e-3)));
   }
 
   void work() {
@@ -374,13 +375,15 @@ class Campaign {
     for (auto& [definition, timing] : timings) {
       const bool finished = timing.run([&] {
         ++done;
-        progress.draw(static_cast<double>(done) / static_cast<double>(left), fmt::format("{}/{} timed", done, left));
+        progress.draw(static_cast<double>(done) / static_cast<double>(left),
+                      fmt::format("{}/{} timed", done, left));
         return !stop_asked;
       });
       if (!finished)
-        throw Interrupted(fmt::format("interrupted: all runs are stored, and the rounds of timing that were finished are in {}; "
-                                      "the same command continues there",
-                                      (options_.out / "timings").string()));
+        throw Interrupted(fmt::format(
+            "interrupted: all runs are stored, and the rounds of timing that were finished are in {}; "
+            "the same command continues there",
+            (options_.out / "timings").string()));
       timings_[definition] = timing.timings();
     }
     if (left > 0) timing_seconds_ = progress.elapsed();
@@ -389,9 +392,9 @@ class Campaign {
   std::vector<CaseVerdict> judged() {
     std::vector<CaseVerdict> verdicts;
     for (const Case& definition : cases_) {
-      verdicts.push_back(left_out(definition)
-                             ? not_run(definition, "not part of the quick selection")
-                             : judge_case(definition, std::move(records_[&definition]), judge, timings_[&definition]));
+      verdicts.push_back(left_out(definition) ? not_run(definition, "not part of the quick selection")
+                                              : judge_case(definition, std::move(records_[&definition]),
+                                                           judge, timings_[&definition]));
     }
     return verdicts;
   }
