@@ -21,6 +21,7 @@
 #include <sstream>
 #include <thread>
 
+#include "vv/advice.hpp"
 #include "vv/gates.hpp"
 #include "vv/machine.hpp"
 #include "vv/revision.hpp"
@@ -393,6 +394,7 @@ class Campaign {
       verdicts.push_back(left_out(definition) ? not_run(definition, "not part of the quick selection")
                                               : judge_case(definition, std::move(records[&definition])));
     }
+    judge_advice(verdicts);
     return verdicts;
   }
 

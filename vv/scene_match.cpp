@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-
 namespace mpm::vv {
 namespace {
 
@@ -56,8 +55,7 @@ void add_differences(const Json& one, const Json& other, const std::string& poin
     add_differences_of_arrays(one, other, pointer, ignored, found);
   } else if (one != other) {
     const std::optional<Magnitude> first = magnitude_of(one), second = magnitude_of(other);
-    const bool same =
-        first && second && first->comparable_with(*second) && first->value == second->value;
+    const bool same = first && second && first->comparable_with(*second) && first->value == second->value;
     if (!same) found.push_back(pointer);
   }
 }

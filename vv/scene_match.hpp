@@ -28,8 +28,8 @@ bool same_value(const Json& one, const Json& other);
 /// Whether `pointer` is one of the `places` or lies below one.
 bool at_or_below_any(const std::string& pointer, const std::vector<std::string>& places);
 
-/// JSON pointers, `pointer` and what follows, at which two values differ or which only one of them has. Places
-/// at or below the `ignored` do not count.
+/// JSON pointers, `pointer` and what follows, at which two values differ or which only one of them has.
+/// Places at or below the `ignored` do not count.
 std::vector<std::string> differences(const Json& one, const Json& other, const std::string& pointer,
                                      const std::vector<std::string>& ignored);
 

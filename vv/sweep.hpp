@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,9 @@ std::vector<SweepAxis> read_sweep(const JsonPlace& place, const Subject& subject
 /// One run for every combination of swept values, the last axis varying fastest. Throws Refusal for the first
 /// that cannot start: at the swept value, or below it, that is to blame.
 std::vector<RunRequest> expand(const Subject& subject, const std::vector<SweepAxis>& sweep);
+
+/// The subject with one value of an axis in it, as if there were no other axis; `chosen` counts its values.
+Subject with_value(const SweepAxis& axis, std::size_t chosen, const Subject& subject);
 
 /// The axis whose parameter is named at `place`.
 const SweepAxis& read_axis(const JsonPlace& place, const std::vector<SweepAxis>& sweep);
