@@ -543,5 +543,138 @@ TEST_F(AdviseCommandTest, RunOfTheWrittenCaseKeepsThePromise) {
   EXPECT_EQ(program({"run", "lie.json", "--out", "broken", "--threads", "1"}).code, 1);
 }
 
+/// The column at other levels, with a trade, or with advice put to the test too.
+Json traded(const std::string& id, const Json& levels) {
+  Json text = column();
+  text["id"] = id;
+  text["sweep"] = measured_sweep();
+  text["sweep"][0]["values"] = levels;
+  text["trades"] = Json::parse(R"([{"title": "stress", "metric": "hencky.stress.l2",
+                                    "problems": ["/scene/gravity/level"], "asked": [0.005]}])");
+  return text;
+}
+
+TEST_F(AdviseCommandTest, CampaignPutsAdviceToTheTest) {
+  Json testing = traded("testing", {30});
+  testing["advice"] = {{"of", "measured"}, {"asked", {0.2, 0.003}}};
+  testing["gates"].push_back({{"id", "kept"},
+                              {"metric", "advice.kept"},
+                              {"at_least", 1},
+                              {"basis", "requirement"},
+                              {"reason", "promised"}});
+  write("testing.json", testing);
+  write("measured.json", traded("measured", {10, 50}));
+  const Answer both = program({"run", "testing.json", "measured.json", "--out", "both", "--threads", "1"});
+  EXPECT_EQ(both.code, 0) << both.out;
+  const Json found = read("both/results.json")["cases"][0]["advice"];
+  ASSERT_EQ(found["trials"].size(), 2u);
+  for (const Json& trial : found["trials"]) {
+    EXPECT_EQ(trial["drawn_from"], "10G and 50G");
+    EXPECT_TRUE(trial["kept"]) << trial;
+    EXPECT_GE(trial["regret"], 1.0);
+  }
+  EXPECT_NE(found["trials"][0]["configuration"], found["trials"][1]["configuration"]);
+  const Answer alone = program({"run", "testing.json", "--out", "alone", "--threads", "1"});
+  EXPECT_EQ(alone.code, 0) << alone.out;
+  EXPECT_TRUE(alone.says("WAITS  kept")) << alone.out;
+}
+
+TEST_F(AdviseCommandTest, GatesOnAdviceAreOfTheCaseAsAWhole) {
+  Json text = traded("testing", {30});
+  text["advice"] = {{"of", "measured"}, {"asked", {0.2}}};
+  text["gates"][0] = {{"id", "kept"},
+                      {"metric", "advice.kept"},
+                      {"at_least", 1},
+                      {"basis", "requirement"},
+                      {"reason", "promised"}};
+  EXPECT_EQ(parse_case(text.dump(), "testing.json").gates[0].metric, "advice.kept");
+  const auto refused_at = [&](const std::string& pointer, const Json& changed) {
+    try {
+      parse_case(changed.dump(), "testing.json");
+      ADD_FAILURE() << pointer;
+    } catch (const CaseError& error) {
+      EXPECT_NE(std::string(error.what()).find("testing.json: " + pointer + ": "), std::string::npos)
+          << error.what();
+    }
+  };
+  Json without = text, some = text, series = text;
+  without.erase("advice");
+  refused_at("/gates/0/metric", without);
+  some["gates"][0]["where"] = {{"order", {"usl"}}};
+  refused_at("/gates/0/where", some);
+  series["gates"][0].update({{"statistic", "reduction"}, {"across", "/scene/grid/cell_size"}});
+  refused_at("/gates/0/metric", series);
+}
+
+/// A rough strip on elastic ground, whose load curve has two families of schemes for its truth.
+Json strip() {
+  return Json::parse(R"({
+    "id": "strip", "title": "A strip on clay", "description": "It is pressed in.",
+    "scene": {
+      "dimension": 2, "scheme": "cpgimp", "damping": 0.7,
+      "grid": {"cell_size": "0.25 m", "lower": ["0 m", "0 m"], "upper": ["2 m", "1.5 m"],
+               "edges": {"x_lower": "roller", "x_upper": "roller", "y_lower": "fixed", "y_upper": "free"}},
+      "bodies": [{"name": "clay", "lower": ["0 m", "0 m"], "upper": ["2 m", "1 m"], "particles_per_cell": [2, 2],
+                  "density": "1800 kg/m^3", "initial_stress": {"type": "geostatic", "surface": "1 m", "k0": 0.6},
+                  "material": {"law": "linear_elastic", "youngs_modulus": "3 MPa", "poissons_ratio": 0.3}}],
+      "rigid_bodies": [{"name": "strip", "lower": ["0 m", "1 m"], "upper": ["0.5 m", "1.5 m"],
+                        "velocity": ["0 m/s", "-0.1 m/s"], "ramp": "0.1 s"}],
+      "gravity": {"acceleration": ["0 m/s^2", "-9.81 m/s^2"], "level": 1, "loading": {"type": "step"}},
+      "time_step": {"stable_fraction": 0.4},
+      "termination": {"type": "at_time", "time": "0.3 s"}
+    },
+    "sweep": [{"parameter": "/scene/scheme", "values": ["cpgimp", "ugimp"]},
+              {"parameter": "/scene/grid/cell_size", "values": ["0.25 m", "0.125 m"]}],
+    "references": [],
+    "probes": [{"id": "descent", "quantity": "displacement", "of": "strip", "every": "5 ms"},
+               {"id": "reaction", "quantity": "reaction", "of": "strip", "every": "5 ms"}],
+    "trades": [{"title": "load curve", "curve": "pressure", "from": "4 mm", "up_to": "20 mm", "within": "1 mm",
+                "finest": [{"/scene/scheme": ["cpgimp"], "/scene/grid/cell_size": ["0.125 m"]},
+                           {"/scene/scheme": ["ugimp"], "/scene/grid/cell_size": ["0.125 m"]}], "asked": [0.5]}],
+    "gates": [{"id": "pressed_in", "metric": "completed", "at_least": 1, "basis": "theory", "reason": "pressed"}]
+  })");
+}
+
+TEST_F(AdviseCommandTest, PromiseOfACurveIsHeldAgainstTheCurve) {
+  write("strip.json", strip());
+  ASSERT_EQ(program({"run", "strip.json", "--out", "out", "--threads", "1"}).code, 0);
+  const auto advised = [](const std::string& file) {
+    return program({"advise", "strip.json", "--error", "0.5", "--from", "out", "--apply", file});
+  };
+  const Answer answer = advised("advised.json");
+  ASSERT_EQ(answer.code, 0) << answer.err << answer.out;
+  EXPECT_TRUE(answer.says(", known to ")) << answer.out;
+  const CurveFile curve = read_curve_file("advised_reference.json");
+  EXPECT_EQ(curve.origin, "simulated");
+  EXPECT_EQ(curve.rows.size(), 200u);
+  EXPECT_EQ(curve.columns[1].experimental.kind, StatedUncertainty::Kind::relative);
+  const Case written = read_case("advised.json");
+  ASSERT_EQ(written.runs.size(), 1u);
+  EXPECT_EQ(written.runs[0].scene.cell_size, 0.25) << "the finest are no offers";
+  EXPECT_EQ(written.measurements.at(0).within, 0.001);
+  EXPECT_EQ(written.gates.at(0).metric, "measured.reference.l2");
+  const Answer kept = program({"run", "advised.json", "--out", "kept", "--threads", "1"});
+  EXPECT_EQ(kept.code, 0) << kept.out;
+  const Json trade = read("out/results.json")["cases"][0]["trades"][0];
+  const Json gate = read("kept/results.json")["cases"][0]["runs"][0]["gates"][0];
+  EXPECT_NEAR(gate["value"].get<double>(),
+              trade["points"][written.runs[0].scene.scheme == Scheme::cpgimp ? 0 : 2]["error"].get<double>(),
+              1e-9)
+      << "the same distance by another way";
+  EXPECT_EQ(advised("advised.json").code, 2) << "is there already";
+  std::ofstream("new_reference.json") << "mine";
+  EXPECT_EQ(advised("new.json").code, 2) << "so is the curve's file";
+  EXPECT_FALSE(fs::exists("new.json"));
+
+  Json lie = read("out/results.json");
+  for (Json& point : lie["cases"][0]["trades"][0]["points"]) {
+    point["error"] = point["error"].get<double>() / 2;
+    point["uncertainty"] = 0.0;
+  }
+  write("out/results.json", lie);
+  ASSERT_EQ(advised("lie.json").code, 0);
+  EXPECT_EQ(program({"run", "lie.json", "--out", "broken", "--threads", "1"}).code, 1);
+}
+
 }  // namespace
 }  // namespace mpm::vv
