@@ -10,6 +10,7 @@
 #include <set>
 #include <string_view>
 
+#include "reports/advice_section.hpp"
 #include "reports/canvas.hpp"
 #include "reports/figures.hpp"
 #include "reports/model_choices.hpp"
@@ -516,6 +517,7 @@ data case_section(const vv::CaseVerdict& verdict, const std::vector<DrawnFigure>
   section.set("figures", figure_entries(verdict, figures, figure_number));
   set_model_choices(section, verdict);
   set_validation(section, verdict);
+  set_advice(section, verdict);
   const std::vector<PlacedGate> gates = gates_of(verdict);
   set_list(section, "gates", gate_groups(gates, false));
   set_list(section, "controls", gate_groups(gates, true));

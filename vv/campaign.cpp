@@ -21,6 +21,7 @@
 #include <sstream>
 #include <thread>
 
+#include "vv/advice.hpp"
 #include "vv/gates.hpp"
 #include "vv/machine.hpp"
 #include "vv/progress.hpp"
@@ -396,6 +397,7 @@ class Campaign {
                                               : judge_case(definition, std::move(records_[&definition]),
                                                            judge, timings_[&definition]));
     }
+    judge_advice(verdicts);
     return verdicts;
   }
 

@@ -4,9 +4,11 @@
 #include <fstream>
 #include <iterator>
 
+#include "vv/advice.hpp"
 #include "vv/case_schema.hpp"
 #include "vv/curves.hpp"
 #include "vv/field_map.hpp"
+#include "vv/gates.hpp"
 #include "vv/json_reader.hpp"
 #include "vv/measurement_reader.hpp"
 #include "vv/metamorphic.hpp"
@@ -180,6 +182,14 @@ Statistic read_statistic(const JsonPlace& place) {
                                   {"discretisation_uncertainty", Statistic::discretisation_uncertainty}});
 }
 
+/// A metric of the runs or, of a case that puts advice to the test, a number of the case as a whole.
+std::string read_gate_metric(const JsonPlace& place, const Case& read, const Gate& gate) {
+  if (!place.present() || !contains(names_of(advice_catalogue()), place.text())) return read_metric(place, read);
+  if (!read.advice) place.refuse("a metric that the case measures", ", which needs the key \"advice\"");
+  if (gate.statistic != Statistic::value) place.refuse("a metric of each run", ", which is one of the whole case");
+  return place.text();
+}
+
 /// What a gate looks at: pairs, a metric or, to compare whole curves, a curve and a stretch of it.
 void read_object(const JsonPlace& place, const Case& read, Gate& gate) {
   if (is_of_pairs(gate.statistic)) {
@@ -189,7 +199,7 @@ void read_object(const JsonPlace& place, const Case& read, Gate& gate) {
   }
   if (is_power_law(gate.statistic)) gate.over = read_metric(place["over"], read);
   if (gate.statistic != Statistic::curve_spread) {
-    gate.metric = read_metric(place["metric"], read);
+    gate.metric = read_gate_metric(place["metric"], read, gate);
     return;
   }
   gate.curve = read_curve_name(place["curve"], read);
@@ -223,6 +233,7 @@ Gate read_gate(const JsonPlace& place, const Case& read) {
   gate.id = place["id"].own_identifier(ids_of(read.gates));
   read_object(place, read, gate);
   gate.where = read_where(place["where"], read.sweep);
+  if (is_of_advice(gate) && !gate.where.empty()) place["where"].refuse("no runs of a gate on the whole case");
   read_across(place["across"], read, gate);
   read_threshold(place, gate);
   gate.basis = place["basis"].one_of({"theory", "requirement", "fit", "reference_uncertainty"});

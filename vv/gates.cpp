@@ -22,14 +22,6 @@ namespace {
 constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
 constexpr const char* completion_metric = "completed";
 
-/// The value a gate compares or, when it is NaN, why there is none.
-struct Measured {
-  double value = not_measured;
-  std::string detail;
-  bool ended_early = false;  ///< there is none because the solver ended the run early and said how
-  bool waits = false;        ///< there is none because the measurement it compares with is missing
-};
-
 // ---- measuring ----
 
 /// Why the run was not compared with the measurement that a metric belongs to; empty if it was.
@@ -353,6 +345,13 @@ RunVerdict judged_run(const Case& definition, const RunRequest& request, Record 
 
 // ---- gates ----
 
+CaseStatus status_of(const CaseVerdict& verdict) {
+  const auto results = gate_results(verdict);
+  const bool good =
+      std::all_of(results.begin(), results.end(), [](const GateResult* r) { return r->good(); });
+  return good ? CaseStatus::pass : CaseStatus::fail;
+}
+
 /// One case while its gates are applied.
 class Bench {
  public:
@@ -372,6 +371,7 @@ class Bench {
 
   CaseVerdict verdict() && {
     for (const Gate& gate : definition().gates) {
+      if (is_of_advice(gate)) continue;
       const bool applied = !gate.pairs.empty()                  ? apply_to_pairs(gate)
                            : gate.statistic == Statistic::value ? apply_to_runs(gate)
                                                                 : apply_to_series(gate);
@@ -380,10 +380,7 @@ class Bench {
     require_completion();
     if (verdict_.runs.empty()) refuse(judged_at_all(), "the case has no runs");
     if (definition().gates.empty()) refuse(judged_at_all(), "the case has no gates");
-    const auto results = gate_results(verdict_);
-    const bool good =
-        std::all_of(results.begin(), results.end(), [](const GateResult* r) { return r->good(); });
-    verdict_.status = good ? CaseStatus::pass : CaseStatus::fail;
+    verdict_.status = status_of(verdict_);
     return std::move(verdict_);
   }
 
@@ -555,6 +552,13 @@ CaseVerdict judge_case(const Case& definition, std::vector<Record> records, cons
                                             definition.runs.size(), timings.size()));
   }
   return Bench(definition, std::move(records), judge_run, timings).verdict();
+}
+
+bool is_of_advice(const Gate& gate) { return gate.metric.starts_with("advice."); }
+
+void add_result(CaseVerdict& verdict, const Gate& gate, const Measured& measured) {
+  verdict.gates.push_back(result_of(gate, "the case", measured));
+  verdict.status = status_of(verdict);
 }
 
 }  // namespace mpm::vv

@@ -456,6 +456,12 @@ std::vector<RunRequest> expand(const Subject& subject, const std::vector<SweepAx
   return runs;
 }
 
+Subject with_value(const SweepAxis& axis, std::size_t chosen, const Subject& subject) {
+  Subject changed = subject;
+  put_alone(axis, chosen, changed);
+  return changed;
+}
+
 const SweepAxis& read_axis(const JsonPlace& place, const std::vector<SweepAxis>& sweep) {
   const SweepAxis* axis = place.present() ? find_axis(sweep, place.text()) : nullptr;
   if (!axis) place.refuse(swept_names(sweep));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,9 @@ std::vector<SweepAxis> read_sweep(const JsonPlace& place, const Subject& subject
 /// value, or below it, that is to blame; and for an entry that takes nothing away, or the last run there is.
 std::vector<RunRequest> expand(const Subject& subject, const std::vector<SweepAxis>& sweep,
                                const JsonPlace& without);
+
+/// The subject with one value of an axis in it, as if there were no other axis; `chosen` counts its values.
+Subject with_value(const SweepAxis& axis, std::size_t chosen, const Subject& subject);
 
 /// The axis whose parameter is named at `place`.
 const SweepAxis& read_axis(const JsonPlace& place, const std::vector<SweepAxis>& sweep);

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "vv/measured_trades.hpp"
+
 namespace mpm::vv {
 namespace {
 
@@ -235,6 +237,42 @@ Json series_to_json(const SeriesVerdict& series) {
           {"gates", gates_to_json(series.gates)}};
 }
 
+Json trial_to_json(const AdviceTrial& trial) {
+  return {{"title", trial.title},
+          {"problem", parameters_to_json(trial.problem)},
+          {"asked", trial.asked},
+          {"drawn_from", trial.drawn_from},
+          {"between", trial.between},
+          {"configuration", parameters_to_json(trial.configuration)},
+          {"promised", number(trial.promised)},
+          {"found", number(trial.found)},
+          {"regret", number(trial.regret)},
+          {"kept", trial.kept},
+          {"no_offer", trial.no_offer},
+          {"lack", trial.lack}};
+}
+
+Json advice_to_json(const std::optional<AdviceVerdict>& advice) {
+  if (!advice) return nullptr;
+  Json json = {{"of", advice->of},
+               {"lack", advice->lack},
+               {"metrics", numbers_by_name(advice->metrics)},
+               {"trials", Json::array()}};
+  for (const AdviceTrial& trial : advice->trials) json["trials"].push_back(trial_to_json(trial));
+  return json;
+}
+
+/// What was run, so that others can tell whether theirs is like it: the scene or the element test as written and,
+/// where advice can be drawn from it, what makes the trades.
+void add_texts(const Case& definition, Json& json) {
+  for (const char* subject : {"scene", "element"})
+    if (definition.text.contains(subject)) json[subject] = definition.text[subject];
+  if (definition.trades.empty()) return;
+  json["definition"] = Json::object();
+  for (const std::string& key : defining_keys())
+    if (definition.text.contains(key)) json["definition"][key] = definition.text[key];
+}
+
 Json case_to_json(const CaseVerdict& verdict) {
   Json json = {{"id", verdict.definition.id},
                {"title", verdict.definition.title},
@@ -246,7 +284,9 @@ Json case_to_json(const CaseVerdict& verdict) {
                {"series", Json::array()},
                {"pairs", pairs_to_json(verdict.pairs)},
                {"trades", trades_to_json(verdict)},
+               {"advice", advice_to_json(verdict.advice)},
                {"gates", gates_to_json(verdict.gates)}};
+  add_texts(verdict.definition, json);
   for (const RunVerdict& run : verdict.runs) json["runs"].push_back(run_to_json(run));
   for (const SeriesVerdict& series : verdict.series) json["series"].push_back(series_to_json(series));
   return json;

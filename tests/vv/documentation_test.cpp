@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "tests/support/scratch_directory.hpp"
+#include "vv/advice.hpp"
 #include "vv/case_file.hpp"
 #include "vv/case_schema.hpp"
 #include "vv/field_map.hpp"
@@ -218,6 +219,7 @@ TEST(Documentation, NamesEveryKeyOfTheSchema) {
 
 TEST(Documentation, NamesEveryMetricReferenceFieldAndMetamorphosis) {
   for (const Metric& metric : metric_catalogue()) EXPECT_TRUE(names(page(), metric.name)) << metric.name;
+  for (const Metric& metric : advice_catalogue()) EXPECT_TRUE(names(page(), metric.name)) << metric.name;
   for (const std::string& reference : reference_catalogue())
     EXPECT_TRUE(names(page(), reference)) << reference;
   for (const FieldQuantity& field : field_catalogue())
