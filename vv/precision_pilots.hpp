@@ -20,7 +20,7 @@ Scene on_larger_cells(const Scene& scene, int factor);
 /// in double. They are compared by their means over the largest cells, in L2 relative to the field. With the
 /// difference d of the two in double, the error at the scene's own cell size is taken as d / 12, what is left
 /// of a method of second order, which is the least it can be expected to be; with the difference r of float
-/// and double the rounding there as 4 r, for twice as many steps of cells twice as many. Whatever stands in
+/// and double the rounding there as 8 r, more than it has been seen to grow. Whatever stands in
 /// the way of pilots leaves the run in double. Throws Abandoned when `pulse` says so.
 ModelChoice choose_precision(const RunRequest& request, const Pulse& pulse);
 

@@ -122,15 +122,14 @@ struct Method {
 
 class VerificationOfTheColumn : public ::testing::TestWithParam<Method> {};
 
-// The two differ by the order of sums alone: some hundred steps of round-off of 1e-16. Measured: at most
-// 3e-12.
-constexpr double round_off = 1e-10;
+// The two differ by the order of sums alone, for some hundred steps of round-off of 1e-16. Measured: at most
+// 6e-14, of initial stresses, from which they hardly move, 5e-12.
+constexpr double round_off = 1e-11;
 
 TEST_P(VerificationOfTheColumn, IsThePlaneToRoundOff) {
   Scene scene = strip(GetParam().scheme, GetParam().poissons_ratio);
   scene.update_order = GetParam().order;
   const Distance distance = distance_of_models(scene);
-  RecordProperty("largest", std::to_string(distance.largest() * 1e16));
   EXPECT_LE(distance.displacement, round_off);
   EXPECT_LE(distance.velocity, round_off);
   EXPECT_LE(distance.stress, round_off);
@@ -208,17 +207,16 @@ TEST(VerificationOfTheColumn, CarriesOverLoadsRampsStatesAndPlates) {
   }
 }
 
-// Damping takes the sign of velocities that at rest are round-off, so the two do not find rest at the same step;
-// what is left of the way to rest is in the order of the criterion's own tolerance. Measured: 2e-6.
+// Damping takes the sign of velocities that at rest are round-off, so the two do not find rest at the same
+// step; what is left of the way to rest is in the order of the criterion's own tolerance. Measured: 2e-7.
 TEST(VerificationOfTheColumn, ComesToTheSameRest) {
   Scene scene = strip(Scheme::cpgimp, 0.3);
   scene.damping = 0.8;
   scene.termination = AtRest{1e-6, 1e-10, 5.0};
   EXPECT_EQ(Simulation(scene).time_step(), Simulation(column_of(scene)).time_step());
   const Distance distance = distance_of_models(scene);
-  RecordProperty("displacement", std::to_string(distance.displacement * 1e9));
-  EXPECT_LE(distance.displacement, 1e-5);
-  EXPECT_LE(distance.stress, 1e-5);
+  EXPECT_LE(distance.displacement, 1e-6);
+  EXPECT_LE(distance.stress, 1e-6);
 }
 
 TEST(Column, EndsByTheSameDisplacement) {
