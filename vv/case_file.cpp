@@ -519,8 +519,8 @@ void read_parts(Case& read) {
     for (const JsonPlace& reading : readings.elements()) read.readings.push_back(read_reading(reading, read));
   }
   read.pairs = read_pairs(place["pairs"], read, metric_names(read));
-  read.trades = read_trades(place["trades"], read,
-                            [&](const JsonPlace& metric) { return read_metric(metric, read); });
+  read.trades =
+      read_trades(place["trades"], read, [&](const JsonPlace& metric) { return read_metric(metric, read); });
   read.advice = read_advice(place["advice"]);
   for (const JsonPlace& gate : place["gates"].some_elements()) read.gates.push_back(read_gate(gate, read));
   if (const JsonPlace claims = place["claims"]; claims.present()) {

@@ -198,6 +198,8 @@ void print_counts(const CampaignVerdict& verdict, const fs::path& out) {
   fmt::print("runs      {} in {:.1f} s on {} thread{}, {} stored record{} reused\n", counts.runs,
              verdict.wall_seconds, verdict.threads, verdict.threads == 1 ? "" : "s", verdict.reused,
              verdict.reused == 1 ? "" : "s");
+  if (verdict.timing_seconds > 0.0)
+    fmt::print("timing    {:.1f} s of these, one run at a time\n", verdict.timing_seconds);
   fmt::print("results   {}\n", out.string());
   std::fflush(stdout);
 }

@@ -62,7 +62,8 @@ std::vector<Metric> general_metrics() {
   all.push_back({"completed", "-", "", "1 if the run ended where it was meant to, else 0"});
   all.push_back({"steps", "-", "", "time steps done"});
   all.push_back({"particle_steps", "-", "", "time steps times particles: the noise-free cost"});
-  all.push_back({"counted_bytes", "-", "", "bytes that the steps move between memory and processor, counted"});
+  all.push_back(
+      {"counted_bytes", "-", "", "bytes that the steps move between memory and processor, counted"});
   all.push_back({"counted_operations", "-", "", "floating-point operations of the steps, counted"});
   return all;
 }

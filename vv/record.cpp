@@ -342,6 +342,10 @@ class Recorder {
       going_on = simulation_.advance();
     }
     wall_ += Clock::now() - began;
+    if (early_wall_ < early) {
+      early_wall_ = wall_;
+      early_steps_ = simulation_.steps();
+    }
     return going_on;
   }
 
@@ -429,7 +433,9 @@ class Recorder {
     record.cost = {.wall_seconds = std::chrono::duration<double>(wall_).count(),
                    .steps = simulation_.steps(),
                    .particle_steps = simulation_.steps() * simulation_.particle_count(),
-                   .memory_bytes = simulation_.memory()};
+                   .memory_bytes = simulation_.memory(),
+                   .early_seconds = std::chrono::duration<double>(early_wall_).count(),
+                   .early_steps = early_steps_};
     return record;
   }
 
@@ -496,7 +502,11 @@ class Recorder {
   std::vector<Sampler> samplers_;
   std::vector<SnapshotRequest> pending_;
   std::vector<Snapshot> snapshots_;
-  Clock::duration wall_{};
+  /// After which steps are no longer early; see `Cost`.
+  static constexpr auto early = std::chrono::milliseconds(150);
+
+  Clock::duration wall_{}, early_wall_{};
+  std::int64_t early_steps_ = 0;
   std::int64_t reported_steps_ = 0;
 };
 
@@ -532,7 +542,11 @@ Record record_element_test(const ElementTest& test, const Pulse& pulse) {
   record.digest = digest_of(run);
   record.paths = std::move(run.curves);
   record.measured = std::move(run.measured);
-  record.cost = {.wall_seconds = wall.count(), .steps = steps, .particle_steps = steps};
+  record.cost = {.wall_seconds = wall.count(),
+                 .steps = steps,
+                 .particle_steps = steps,
+                 .early_seconds = wall.count(),
+                 .early_steps = steps};
   return record;
 }
 
@@ -649,7 +663,9 @@ Json to_json(const Record& record) {
            {{"wall_seconds", number(record.cost.wall_seconds)},
             {"steps", record.cost.steps},
             {"particle_steps", record.cost.particle_steps},
-            {"memory_bytes", record.cost.memory_bytes}}},
+            {"memory_bytes", record.cost.memory_bytes},
+            {"early_seconds", number(record.cost.early_seconds)},
+            {"early_steps", record.cost.early_steps}}},
           {"profile", profile_to_json(record.profile)},
           {"histories", histories_to_json(record.histories)},
           {"snapshots", snapshots_to_json(record.snapshots)},
@@ -681,7 +697,9 @@ Record record_from_json(const Json& json) {
   record.cost = {.wall_seconds = number_from(cost.at("wall_seconds")),
                  .steps = cost.at("steps").get<std::int64_t>(),
                  .particle_steps = cost.at("particle_steps").get<std::int64_t>(),
-                 .memory_bytes = cost.at("memory_bytes").get<std::int64_t>()};
+                 .memory_bytes = cost.at("memory_bytes").get<std::int64_t>(),
+                 .early_seconds = number_from(cost.at("early_seconds")),
+                 .early_steps = cost.at("early_steps").get<std::int64_t>()};
   record.profile = profile_from_json(json.at("profile"));
   record.histories = histories_from_json(json.at("histories"));
   record.snapshots = snapshots_from_json(json.at("snapshots"));

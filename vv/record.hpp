@@ -50,6 +50,8 @@ struct Cost {
   std::int64_t steps = 0;
   std::int64_t particle_steps = 0;
   std::int64_t memory_bytes = 0;  ///< of the solver's particles and nodes; 0 of an element test, which has neither
+  double early_seconds = 0.0;    ///< when the steps had taken 0.15 s of wall time, or were over: how long ...
+  std::int64_t early_steps = 0;  ///< ... and how many they were
 };
 
 /// What a run did: everything judged later is computed from this, never from the simulation itself.

@@ -31,8 +31,8 @@ std::vector<std::size_t> selected_runs(const Case& definition, const std::vector
 std::vector<RunGroup> groups_across(const Case& definition, const std::vector<std::size_t>& runs,
                                     const std::string& across);
 
-/// Groups runs that have the same values of these parameters, and no others in `fixed`; groups and the runs in them
-/// in sweep order.
+/// Groups runs that have the same values of these parameters, and no others in `fixed`; groups and the runs
+/// in them in sweep order.
 std::vector<RunGroup> groups_alike_in(const Case& definition, const std::vector<std::string>& parameters);
 
 }  // namespace mpm::vv

@@ -156,6 +156,7 @@ struct CampaignVerdict {
   bool quick = false;
   int reused = 0;  ///< runs whose stored record was still valid, repeats included
   double wall_seconds = 0.0;
+  double timing_seconds = 0.0;  ///< of these, for timing the runs of trades; 0 if all of it was done before
   std::vector<CaseVerdict> cases;
   Counts counts() const;
   bool passed() const;  ///< every gate good, every control red, every case run
