@@ -295,6 +295,15 @@ TEST_F(AdviseCommandTest, SweptProblemsAllCountUnlessOneIsNamed) {
       << none.err;
 }
 
+TEST_F(AdviseCommandTest, WhatFollowsAlongASweptProblemHasToBeMeasuredToo) {
+  change_column({{"/sweep", Json::parse(R"([{"parameter": "/scene/gravity/level", "values": [10, 50],
+                                             "with": {"/scene/damping": [0.8, 0.7]}}])")}});
+  const Answer answer = advise({"--error", "0.1"});
+  EXPECT_EQ(answer.code, 1);
+  EXPECT_TRUE(answer.says("differs    /scene/damping: 0.7 here, 0.8 there")) << answer.out;
+  EXPECT_EQ(advise({"--error", "0.1", "--problem", "10G"}).code, 0) << "there the damping is that measured";
+}
+
 TEST_F(AdviseCommandTest, FollowersOfTheProblemHaveToFollow) {
   Json with = results();
   with["cases"][1]["definition"]["sweep"][0]["with"] = {
