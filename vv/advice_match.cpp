@@ -58,11 +58,14 @@ std::string listed_values(const std::vector<Json>& values) {
 class ProblemReader {
  public:
   ProblemReader(const MeasuredCase& measured, const std::vector<const TradeVerdict*>& trades,
-                const std::vector<SweepAxis>& axes)
-      : measured_(measured), trades_(trades), axes_(axes) {}
+                const std::vector<SweepAxis>& axes, const std::vector<std::string>& decided)
+      : measured_(measured), trades_(trades), axes_(axes), decided_(decided) {}
 
   AskedProblem read(Json scene) const {
     AskedProblem asked{.scene = std::move(scene), .problem = {}, .near = {}, .differences = {}};
+    for (const std::string& pointer : differences(asked.scene, measured_.scene, root, decided_))
+      asked.differences.push_back(
+          {pointer, text_at(asked.scene, pointer), text_at(measured_.scene, pointer)});
     for (const SweepAxis& axis : axes_) {
       const std::optional<Json> value =
           axis.variants.empty() ? own_value(axis, asked.scene) : own_variant(axis, asked.scene);
@@ -132,6 +135,7 @@ class ProblemReader {
   const MeasuredCase& measured_;
   const std::vector<const TradeVerdict*>& trades_;
   const std::vector<SweepAxis>& axes_;
+  const std::vector<std::string>& decided_;  ///< places that the configurations or the problem change
 };
 
 // ---- the problems of the case ----
@@ -160,8 +164,8 @@ std::vector<SweptScene> scenes_of(const Case& asked, const std::vector<std::stri
 }
 
 /// Keeps the problem that is named, by what it is swept over or by its place among the measured ones.
-void keep_named(const std::string& name, const std::vector<SweptScene>& scenes,
-                std::vector<AskedProblem>& problems) {
+void keep_named(const std::string& name, const std::vector<SweptScene>& scenes, TradeMatch& match) {
+  std::vector<AskedProblem>& problems = match.problems;
   std::vector<std::string> names;
   std::vector<AskedProblem> kept;
   for (std::size_t k = 0; k < problems.size(); ++k) {
@@ -169,9 +173,7 @@ void keep_named(const std::string& name, const std::vector<SweptScene>& scenes,
     names.push_back(scope_of(values));
     if (names.back() == name || scope_of(problems[k].problem) == name) kept.push_back(problems[k]);
   }
-  if (kept.empty())
-    throw std::runtime_error(
-        fmt::format("--problem: expected a problem of the case ({}), found \"{}\"", listed(names), name));
+  if (kept.empty()) match.differences.push_back({problem_option, name, listed(names)});
   problems = std::move(kept);
 }
 
@@ -208,14 +210,12 @@ TradeMatch match_trade(const Case& asked, const MeasuredCase& measured, const st
     const auto sweeps_it = [&](const SweepAxis& own) { return own.parameter == axis.parameter; };
     if (std::any_of(asked.sweep.begin(), asked.sweep.end(), sweeps_it)) match.swept.push_back(axis.parameter);
   }
-  const Json& scene = asked.text.at("scene");
-  for (const std::string& pointer : differences(scene, measured.scene, root, decided))
-    match.differences.push_back({pointer, text_at(scene, pointer), text_at(measured.scene, pointer)});
-
-  const ProblemReader reader(measured, trades, axes);
+  const ProblemReader reader(measured, trades, axes, decided);
   const std::vector<SweptScene> scenes = scenes_of(asked, match.swept);
   for (const SweptScene& each : scenes) match.problems.push_back(reader.read(each.scene));
-  if (!problem.empty() && match.alike()) keep_named(problem, scenes, match.problems);
+  const bool some_alike = std::any_of(match.problems.begin(), match.problems.end(),
+                                      [](const AskedProblem& each) { return each.differences.empty(); });
+  if (!problem.empty() && some_alike) keep_named(problem, scenes, match);
   for (const AskedProblem& each : match.problems)
     match.differences.insert(match.differences.end(), each.differences.begin(), each.differences.end());
   return match;

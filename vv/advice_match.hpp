@@ -10,6 +10,9 @@
 /// Which measured trade tells of the scene of a case.
 namespace mpm::vv {
 
+/// Stands for a pointer where the problem that is named is none of the case's.
+inline constexpr const char* problem_option = "--problem";
+
 /// A place at which a case is not what was measured, for a person.
 struct Difference {
   std::string pointer, here, there;
@@ -43,7 +46,7 @@ struct TradeMatch {
 /// is swept over an axis of the problem asks for all of its values, or for the one that `problem` names
 /// ("50G").
 ///
-/// The trade has the title; throws std::runtime_error for a `problem` that the case does not have.
+/// There is a trade of that title.
 TradeMatch match_trade(const Case& asked, const MeasuredCase& measured, const std::string& title,
                        const std::string& problem);
 

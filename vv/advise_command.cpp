@@ -105,6 +105,16 @@ std::vector<Candidate> candidates_in(const MeasuredCampaign& campaign, const Cas
   return candidates;
 }
 
+/// Throws where a scene was measured and the problem that is named is all it lacks.
+void require_problem(const std::vector<Candidate>& candidates) {
+  for (const Candidate& candidate : candidates) {
+    const std::vector<Difference>& differences = candidate.match.differences;
+    if (differences.size() == 1 && differences[0].pointer == problem_option)
+      throw std::runtime_error(fmt::format("{}: expected a problem of the case ({}), found \"{}\"",
+                                           problem_option, differences[0].there, differences[0].here));
+  }
+}
+
 }  // namespace
 
 struct AdviseCommand::Options {
@@ -191,7 +201,8 @@ void tell_choice(const TradeVerdict& trade, const Choice& choice, double error, 
                                       : "no error was found");
   }
   if (time > 0.0)
-    say("", fmt::format("the time asked for is {:.3g} times the slowest repeat", time / point.timing->high));
+    say(error > 0.0 ? "" : "margin",
+        fmt::format("the time asked for is {:.3g} times the slowest repeat", time / point.timing->high));
   if (choice.runner_up) {
     const TradePoint& next = trade.points[*choice.runner_up];
     say("runner-up", fmt::format("{}; costs {:.3g} times as much", text_of(next), cost_ratio(next, point)));
@@ -200,8 +211,11 @@ void tell_choice(const TradeVerdict& trade, const Choice& choice, double error, 
   }
   if (choice.cheaper) {
     const TradePoint& lost = trade.points[*choice.cheaper];
-    say("cheaper", fmt::format("{}; saves {:.0f} % and has {:.3g} times the error", text_of(lost),
-                               100.0 * (1.0 - cost_ratio(lost, point)), lost.bound() / point.bound()));
+    const std::string loss =
+        point.bound() > 0.0 ? fmt::format(" and has {:.3g} times the error", lost.bound() / point.bound())
+                            : "";
+    say("cheaper",
+        fmt::format("{}; saves {:.0f} %{}", text_of(lost), 100.0 * (1.0 - cost_ratio(lost, point)), loss));
   } else {
     say("cheaper", "nothing that was measured is");
   }
@@ -210,15 +224,14 @@ void tell_choice(const TradeVerdict& trade, const Choice& choice, double error, 
 /// What comes closest to being chosen.
 void tell_nearest_miss(const TradeVerdict& trade, double error, double time) {
   fmt::print("nothing measured meets it\n");
-  const Choice quick = time > 0.0 ? most_accurate_within(trade, time) : cheapest_within(trade, 1e300, true);
   const TradePoint *best = nullptr, *fastest = nullptr;
   for (const TradePoint& point : trade.points) {
     if (!is_offer(point)) continue;
     if (!best || point.bound() < best->bound()) best = &point;
     if (point.timing && (!fastest || point.timing->high < fastest->timing->high)) fastest = &point;
   }
-  if (error > 0.0 && time > 0.0 && quick.point)
-    say("nearest", "within the time: " + text_of(trade.points[*quick.point]));
+  const Choice quick = most_accurate_within(trade, time);
+  if (error > 0.0 && quick.point) say("nearest", "within the time: " + text_of(trade.points[*quick.point]));
   if (error > 0.0 && best) say("nearest", "most accurate: " + text_of(*best));
   if (time > 0.0 && fastest) say("nearest", "fastest: " + text_of(*fastest));
   if (time > 0.0 && !fastest) say("nearest", "no configuration has been timed");
@@ -246,7 +259,7 @@ std::vector<MeasuredCampaign> AdviseCommand::Options::campaigns() const {
 std::optional<Candidate> AdviseCommand::Options::matching(const std::vector<Candidate>& candidates) const {
   const auto alike = [](const Candidate& candidate) { return candidate.match.alike(); };
   const auto first = std::find_if(candidates.begin(), candidates.end(), alike);
-  if (first == candidates.end()) return std::nullopt;
+  if (first == candidates.end()) return require_problem(candidates), std::nullopt;
   std::set<std::string> titles;
   for (const Candidate& candidate : candidates)
     if (alike(candidate) && candidate.match.measured == first->match.measured)

@@ -295,6 +295,15 @@ TEST_F(AdviseCommandTest, SweptProblemsAllCountUnlessOneIsNamed) {
       << none.err;
 }
 
+TEST_F(AdviseCommandTest, WhatFollowsAlongASweptProblemHasToBeMeasuredToo) {
+  change_column({{"/sweep", Json::parse(R"([{"parameter": "/scene/gravity/level", "values": [10, 50],
+                                             "with": {"/scene/damping": [0.8, 0.7]}}])")}});
+  const Answer answer = advise({"--error", "0.1"});
+  EXPECT_EQ(answer.code, 1);
+  EXPECT_TRUE(answer.says("differs    /scene/damping: 0.7 here, 0.8 there")) << answer.out;
+  EXPECT_EQ(advise({"--error", "0.1", "--problem", "10G"}).code, 0) << "there the damping is that measured";
+}
+
 TEST_F(AdviseCommandTest, FollowersOfTheProblemHaveToFollow) {
   Json with = results();
   with["cases"][1]["definition"]["sweep"][0]["with"] = {
@@ -487,36 +496,21 @@ TEST(ConfiguredScene, SetsRemovesAndRefuses) {
 
 // ---- from measurement to promise ----
 
-/// Results as a campaign on the column's sweep leaves them, with the trades that its runs make.
-Json campaign_with_trades(Json results) {
-  Json& measured = results["cases"][0];
-  Json trades = Json::array();
-  for (const int level : {1, 10, 50}) {
-    Json trade = measured_trade(level);
-    trade["points"].clear();
-    for (std::size_t run = 0; run < measured["runs"].size(); ++run) {
-      const Json& found = measured["runs"][run];
-      if (found["parameters"]["/scene/gravity/level"] != level) continue;
-      trade["points"].push_back(
-          measured_point(static_cast<int>(run), found["parameters"]["/scene/grid/cell_size"],
-                         found["parameters"]["order"], found["metrics"]["hencky.stress.l2"], nullptr));
-      trade["points"].back()["bytes"] = found["cost"]["particle_steps"];
-    }
-    trades.push_back(trade);
-  }
-  measured["trades"] = trades;
-  measured["definition"] = measured_case()["definition"];
-  return results;
+/// The column at other levels, with a trade, or with advice put to the test too.
+Json traded(const std::string& id, const Json& levels) {
+  Json text = column();
+  text["id"] = id;
+  text["sweep"] = measured_sweep();
+  text["sweep"][0]["values"] = levels;
+  text["trades"] = Json::parse(R"([{"title": "stress", "metric": "hencky.stress.l2",
+                                    "problems": ["/scene/gravity/level"], "asked": [0.005]}])");
+  return text;
 }
 
 TEST_F(AdviseCommandTest, RunOfTheWrittenCaseKeepsThePromise) {
-  Json swept = column();
-  swept["id"] = "swept";
-  swept["sweep"] = measured_sweep();
-  write("swept.json", swept);
+  write("swept.json", traded("swept", {1, 10, 50}));
   ASSERT_EQ(program({"run", "swept.json", "--out", "measured", "--threads", "2"}).code, 0);
-  const Json measured = campaign_with_trades(read("measured/results.json"));
-  write("measured/results.json", measured);
+  const Json measured = read("measured/results.json");
   std::vector<double> errors;
   for (const Json& point : measured["cases"][0]["trades"][2]["points"]) errors.push_back(point["error"]);
   std::sort(errors.begin(), errors.end());
@@ -541,17 +535,6 @@ TEST_F(AdviseCommandTest, RunOfTheWrittenCaseKeepsThePromise) {
   write("measured/results.json", lie);
   ASSERT_EQ(advise({"--error", asked, "--from", "measured", "--apply", "lie.json"}).code, 0);
   EXPECT_EQ(program({"run", "lie.json", "--out", "broken", "--threads", "1"}).code, 1);
-}
-
-/// The column at other levels, with a trade, or with advice put to the test too.
-Json traded(const std::string& id, const Json& levels) {
-  Json text = column();
-  text["id"] = id;
-  text["sweep"] = measured_sweep();
-  text["sweep"][0]["values"] = levels;
-  text["trades"] = Json::parse(R"([{"title": "stress", "metric": "hencky.stress.l2",
-                                    "problems": ["/scene/gravity/level"], "asked": [0.005]}])");
-  return text;
 }
 
 TEST_F(AdviseCommandTest, CampaignPutsAdviceToTheTest) {
