@@ -285,13 +285,13 @@ double check_body(const Scene& scene, const Body& body, const std::string& place
   for (std::size_t axis = 0; axis < axes_of(scene); ++axis) {
     require_finite(body.velocity[axis], at_index(place + "/velocity", axis), "velocity", "m/s");
   }
-  check_material(scene, body, place + "/material");
-  check_ring(scene, body, place + "/ring");
   check_density_ramp(body, place + "/density_ramp");
   if (body.inertia) {
     require_positive(*body.inertia, place + "/inertia", "a density", "kg/m^3");
     require(!scene.driven_motion, place + "/inertia", "none in a driven motion, whose forces go with the mass", "one");
   }
+  check_material(scene, body, place + "/material");
+  check_ring(scene, body, place + "/ring");
   double particles = 1.0;
   for (std::size_t axis = 0; axis < axes_of(scene); ++axis)
     particles *= check_extent(scene, body, axis, place);

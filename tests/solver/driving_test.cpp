@@ -333,6 +333,7 @@ TEST(Body, ADensityRampGoesFromStageToStage) {
 
 TEST(VerificationOfLoads, InertiaSlowsAFallAndLeavesTheWeight) {
   Scene scene = free_block();
+  scene.time_step = GivenTimeStep{1e-4};
   scene.gravity.acceleration = {0.0, -10.0};
   const double own = momentum_of(run_to_end(scene).particles())[1];
   scene.bodies[0].inertia = 4 * scene.bodies[0].density;

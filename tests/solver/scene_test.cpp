@@ -303,7 +303,7 @@ const std::vector<Impossible>& impossible_scenes() {
       {"/bodies/0/density_ramp/final_density", "above zero", "0 kg/m^3",
        [](Scene& s) { body(s).density_ramp = DensityRamp{0.0, {{0.0, 1.0}}}; }},
       {"/bodies/0/density_ramp/start", "zero or above", "-1 s",
-       [](Scene& s) { body(s).density_ramp = DensityRamp{2000.0, -1.0, 1.0}; }},
+       [](Scene& s) { body(s).density_ramp = DensityRamp{-1.0, {{2000.0, 1.0}}}; }},
       {"/bodies/0/density_ramp/duration", "above zero", "0 s",
        [](Scene& s) { body(s).density_ramp = DensityRamp{0.0, {{2000.0, 0.0}}}; }},
       {"/bodies/0/initial_stress/surface", "not below the body's upper edge, 1 m", "0.9 m",
