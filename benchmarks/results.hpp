@@ -23,7 +23,7 @@ struct StepResult {
   int threads = 1;
   Measured rate;
   std::optional<double> target;
-  double bytes = 0.0, flops = 0.0;  ///< a particle and step, of the model in step_cost.hpp
+  double bytes = 0.0, flops = 0.0;  ///< a particle and step, of the count in vv/step_cost.hpp
   double share_of_bandwidth =
       0.0;                     ///< bytes times rate over the triad of the memory that holds the scene [-]
   double share_of_peak = 0.0;  ///< flops times rate over the peak [-]

@@ -13,7 +13,9 @@
 #include "vv/norms.hpp"
 #include "vv/probe_reader.hpp"
 #include "vv/scene_reader.hpp"
+#include "vv/sufficient_model.hpp"
 #include "vv/sweep.hpp"
+#include "vv/trade_reader.hpp"
 
 namespace mpm::vv {
 namespace {
@@ -33,12 +35,14 @@ std::vector<std::string> metric_names(const Case& read) {
   std::vector<std::string> names = names_of(metric_catalogue());
   for (const Reading& reading : read.readings) names.push_back(metric_of(reading).name);
   for (const std::string& name : comparison_metric_names(read.measurements)) names.push_back(name);
+  for (const std::string& name : trade_metric_names(read.trades)) names.push_back(name);
   return names;
 }
 
 std::string read_metric(const JsonPlace& place, const Case& read) {
   const std::string name = place.one_of(metric_names(read));
-  if (name.starts_with(reading_prefix) || name.starts_with(measured_prefix)) return name;
+  for (const char* prefix : {reading_prefix, measured_prefix, trade_prefix})
+    if (name.starts_with(prefix)) return name;
   const Metric& metric = *std::find_if(metric_catalogue().begin(), metric_catalogue().end(),
                                        [&](const Metric& m) { return m.name == name; });
   if (!metric.reference.empty() && !contains(read.references, metric.reference)) {
@@ -483,14 +487,17 @@ void read_parts(Case& read) {
       "scene",   "element", "sweep", "references",      "readings",
       "gates",   "figures"};
   keys.insert(keys.end(), {"measurements", "pairs"});
-  if (!place["element"].present()) keys.insert(keys.end(), {"metamorphoses", "probes", "snapshots", "cuts"});
+  if (!place["element"].present()) {
+    keys.insert(keys.end(), {"metamorphoses", "probes", "snapshots", "cuts"});
+    keys.insert(keys.end(), {"trades", "trade_without", "advice"});
+  }
   place.allow_only(keys);
   optional_text(place["$schema"]);
   read_description(place, read);
   const Subject subject = read_subject(place);
   read_checked(subject);  // as written, before anything is swept
   read.sweep = read_sweep(place["sweep"], subject);
-  read.runs = expand(subject, read.sweep);
+  read.runs = expand(subject, read.sweep, place["trade_without"]);
   require_suited(place["references"], read);
   read.metamorphoses = read_metamorphoses(place["metamorphoses"], read);
   read.probes = read_probes(place["probes"], read.runs);
@@ -502,6 +509,9 @@ void read_parts(Case& read) {
     for (const JsonPlace& reading : readings.elements()) read.readings.push_back(read_reading(reading, read));
   }
   read.pairs = read_pairs(place["pairs"], read, metric_names(read));
+  read.trades = read_trades(place["trades"], read,
+                            [&](const JsonPlace& metric) { return read_metric(metric, read); });
+  read.advice = read_advice(place["advice"]);
   for (const JsonPlace& gate : place["gates"].some_elements()) read.gates.push_back(read_gate(gate, read));
   if (const JsonPlace claims = place["claims"]; claims.present()) {
     for (const JsonPlace& claim : claims.elements()) read.claims.push_back(read_claim(claim, read));
@@ -509,6 +519,8 @@ void read_parts(Case& read) {
   if (const JsonPlace figures = place["figures"]; figures.present()) {
     for (const JsonPlace& figure : figures.elements()) read.figures.push_back(read_figure(figure, read));
   }
+  // Last, since it depends on all that the case asks for, and what it asks for is checked against the scene as written.
+  for (RunRequest& run : read.runs) choose_model(read, run);
 }
 
 /// The second, independent net: what the published schema refuses is refused, whatever the reader above

@@ -356,7 +356,7 @@ RunVerdict judged_run(const Case& definition, const RunRequest& request, Record 
 /// One case while its gates are applied.
 class Bench {
  public:
-  Bench(const Case& definition, std::vector<Record> records, const Judge& judge_run) {
+  Bench(const Case& definition, std::vector<Record> records, const Judge& judge_run, const Timings& timings) {
     verdict_.definition = definition;
     for (std::size_t run = 0; run < records.size(); ++run) {
       verdict_.runs.push_back(
@@ -365,6 +365,8 @@ class Bench {
     covered_.resize(records.size(), false);
     compare_with_measurements(verdict_);
     verdict_.pairs = judge_pairs(verdict_);
+    verdict_.trades = judge_trades(definition, verdict_.runs, timings);
+    keep_trade_metrics(definition, verdict_.trades, verdict_.runs);
     build_series();
   }
 
@@ -542,12 +544,17 @@ class Bench {
 
 }  // namespace
 
-CaseVerdict judge_case(const Case& definition, std::vector<Record> records, const Judge& judge_run) {
+CaseVerdict judge_case(const Case& definition, std::vector<Record> records, const Judge& judge_run,
+                       const Timings& timings) {
   if (records.size() != definition.runs.size()) {
     throw std::invalid_argument(fmt::format("case {} has {} runs and {} records", definition.id,
                                             definition.runs.size(), records.size()));
   }
-  return Bench(definition, std::move(records), judge_run).verdict();
+  if (!timings.empty() && timings.size() != definition.runs.size()) {
+    throw std::invalid_argument(fmt::format("case {} has {} runs and {} timings", definition.id,
+                                            definition.runs.size(), timings.size()));
+  }
+  return Bench(definition, std::move(records), judge_run, timings).verdict();
 }
 
 }  // namespace mpm::vv

@@ -22,7 +22,9 @@ using Judge = std::function<Judgement(const Case&, const RunRequest&, const Reco
 /// - The metric `bits_differ` is 0 when the repeat of the run has the same digest, 1 when it has not, absent
 ///   without a repeat.
 ///
-/// Throws std::invalid_argument when the records are not one per run.
-CaseVerdict judge_case(const Case& definition, std::vector<Record> records, const Judge& judge_run = judge);
+/// `timings` are for the case's trades, one a run or none; no gate sees them. Throws std::invalid_argument when records or
+/// timings are not one per run.
+CaseVerdict judge_case(const Case& definition, std::vector<Record> records, const Judge& judge_run = judge,
+                       const Timings& timings = {});
 
 }  // namespace mpm::vv
