@@ -13,8 +13,11 @@
 #include "reports/advice_section.hpp"
 #include "reports/canvas.hpp"
 #include "reports/figures.hpp"
+#include "reports/model_choices.hpp"
 #include "reports/page_data.hpp"
 #include "reports/performance_section.hpp"
+#include "reports/trade_section.hpp"
+#include "reports/trade_svg.hpp"
 #include "reports/validation_section.hpp"
 #include "vv/curves.hpp"
 #include "vv/norms.hpp"
@@ -23,6 +26,7 @@ namespace mpm::reports {
 
 std::string_view document_template();
 std::string_view document_style();
+std::string_view trade_script();
 
 namespace {
 
@@ -489,12 +493,14 @@ data figure_entries(const vv::CaseVerdict& verdict, const std::vector<DrawnFigur
       return figure.case_id == verdict.definition.id && figure.figure_id == request.id;
     });
     if (drawn == figures.end()) continue;
+    const std::string on_screen = request.kind == "trade" ? trade_html(verdict, request) : "";
     entries << object(
         {{"anchor", verdict.definition.id + "-" + request.id},
          {"png", base64(drawn->png)},
          {"width", std::to_string(drawn->pixel_width / 2)},
          {"alt", fmt::format("{} of {}: {}", request.kind, verdict.definition.title, request.caption)},
          {"failure", drawn->failure},
+         {"on_screen", on_screen},
          {"number", std::to_string(number++)},
          {"caption", request.caption}});
   }
@@ -514,7 +520,9 @@ data case_section(const vv::CaseVerdict& verdict, const std::vector<DrawnFigure>
               {"not_run_reason", verdict.status == vv::CaseStatus::not_run ? verdict.not_run_reason : ""}});
   set_exact_solutions(section, definition);
   section.set("figures", figure_entries(verdict, figures, figure_number));
+  set_model_choices(section, verdict);
   set_validation(section, verdict);
+  set_trades(section, verdict);
   set_advice(section, verdict);
   const std::vector<PlacedGate> gates = gates_of(verdict);
   set_list(section, "gates", gate_groups(gates, false));
@@ -784,6 +792,8 @@ std::string report_html(const vv::CampaignVerdict& verdict, const std::vector<Dr
   page.set("commands", commands);
   set_runs_across_cases(page, verdict);
   set_validation_overview(page, verdict);
+  set_trade_overview(page, verdict);
+  page.set("trade_script", std::string(trade_script()));
   page.set("performance", performance_section(performance, verdict, performance_figures, figure_number));
   page.set("glossary", glossary());
   return rendered(document_template(), page);

@@ -12,6 +12,7 @@
 #include <stdexcept>
 
 #include "reports/figure_parts.hpp"
+#include "reports/trade_figures.hpp"
 #include "reports/typography.hpp"
 #include "reports/validation_figures.hpp"
 #include "vv/curves.hpp"
@@ -1211,6 +1212,7 @@ std::string name_of_parameter(const std::string& pointer, const vv::Json& value)
   if (!pointer.starts_with('/')) return escaped(text);
   if (pointer == "/scene/gravity/level") return escaped(text) + "G";
   if (pointer == "/scene/scheme") return scheme_name(text);
+  if (pointer == "/scene/precision") return escaped(text);
   if (pointer == "/scene/grid/cell_size") {
     const auto metres = length_of(value);
     return "<i>h</i> = " + (metres ? millimetres(*metres) + " mm" : escaped(text));
@@ -1330,6 +1332,7 @@ Plot plot_of(const vv::CaseVerdict& verdict, const vv::FigureRequest& request) {
   if (request.kind == "comparison") return comparison_plot_of(verdict, request);
   if (request.kind == "pairs") return pairs_plot_of(verdict, request);
   if (request.kind == "trend") return trend_plot_of(verdict, request);
+  if (request.kind == "trade") return trade_plot_of(verdict, request);
   const std::vector<Member> members = members_of(verdict, request);
   const auto panels = distinct(members, [](const Member& m) { return m.panel; });
   Plot plot;

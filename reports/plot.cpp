@@ -108,7 +108,12 @@ std::vector<std::string> notes_on_missing_points(const Panel& panel) {
       outside += f == Fate::outside;
       not_finite += f == Fate::not_finite;
     }
-    if (outside + not_finite > 0) counts.push_back({curve.label, {outside, not_finite}});
+    if (outside + not_finite == 0) continue;
+    auto same = std::find_if(counts.begin(), counts.end(),
+                             [&curve](const auto& entry) { return entry.first == curve.label; });
+    if (same == counts.end()) same = counts.insert(same, {curve.label, {0, 0}});
+    same->second.first += outside;
+    same->second.second += not_finite;
   }
   std::vector<std::string> notes;
   const auto list = [&counts](auto pick) {
@@ -360,11 +365,26 @@ void draw_error_bars(Canvas& canvas, const Placed& placed, const PlotCurve& curv
   canvas.unclip();
 }
 
+/// Level bars with a cap at either end, cut at the frame.
+void draw_level_error_bars(Canvas& canvas, const Placed& placed, const PlotCurve& curve) {
+  const std::size_t count =
+      std::min({curve.x.size(), curve.y.size(), curve.x_low.size(), curve.x_high.size()});
+  canvas.clip(placed.frame);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Point low = reachable(placed, curve.x_low[i], curve.y[i]),
+                high = reachable(placed, curve.x_high[i], curve.y[i]);
+    if (!std::isfinite(low.x + high.x + low.y) || !(high.x > low.x)) continue;
+    draw_whisker(canvas, low.x, high.x, low.y, bar_cap, {curve.look.color, bar_width, {}});
+  }
+  canvas.unclip();
+}
+
 void draw_curve(Canvas& canvas, const Placed& placed, const PlotCurve& curve, Layout::Panel& layout) {
   const std::size_t count = std::min(curve.x.size(), curve.y.size());
   std::vector<Point> path(count);
   for (std::size_t i = 0; i < count; ++i) path[i] = reachable(placed, curve.x[i], curve.y[i]);
   draw_error_bars(canvas, placed, curve);
+  draw_level_error_bars(canvas, placed, curve);
   canvas.clip(placed.frame);
   if (curve.look.line_width > 0.0)
     canvas.line(path, {curve.look.color, curve.look.line_width, curve.look.dash});

@@ -63,6 +63,8 @@ struct PlotCurve {
   int layer = 0;  ///< curves of a higher layer are drawn over those of a lower one
   /// Half heights of upright error bars, one a point, in the unit of y; empty draws none.
   std::vector<double> bars = {};
+  /// Ends of level error bars, one a point, in the unit of x; empty draws none.
+  std::vector<double> x_low = {}, x_high = {};
 };
 
 /// What lies between two ordinates at each of ascending abscissae, in the units of the axes. A place that is

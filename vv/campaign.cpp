@@ -438,7 +438,7 @@ double time_step_of(const Scene& scene) {
   for (const Body& body : scene.bodies) {
     const double modulus =
         std::visit([](const auto& material) { return material.youngs_modulus; }, body.material);
-    fastest = std::max(fastest, std::sqrt(modulus / body.density));
+    fastest = std::max(fastest, std::sqrt(modulus / body.lightest()));
   }
   return std::get<StableFraction>(scene.time_step).fraction * scene.cell_size / fastest;
 }

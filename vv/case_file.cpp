@@ -15,6 +15,7 @@
 #include "vv/norms.hpp"
 #include "vv/probe_reader.hpp"
 #include "vv/scene_reader.hpp"
+#include "vv/sufficient_model.hpp"
 #include "vv/sweep.hpp"
 #include "vv/trade_reader.hpp"
 
@@ -250,6 +251,7 @@ std::vector<std::string> figure_keys(const std::string& kind) {
   if (kind == "decomposition")
     return {"id", "kind", "caption", "panels", "where", "over", "metrics", "references"};
   if (kind == "pairs") return {"id", "kind", "caption", "pairs"};
+  if (kind == "trade") return {"id", "kind", "caption", "trade"};
   std::vector<std::string> keys = {"id", "kind", "caption", "panels", "series", "where"};
   if (kind == "comparison") keys.push_back("measurements");
   if (kind == "trend") keys.insert(keys.end(), {"over", "abscissa", "metrics", "published"});
@@ -354,6 +356,15 @@ std::vector<std::string> read_some_names(const JsonPlace& place, const std::vect
   return read_names(place, allowed);
 }
 
+/// The title of one of the case's trades; empty, which is all of them, if `place` is absent.
+std::string read_trade_title(const JsonPlace& figure, const Case& read) {
+  if (read.trades.empty()) figure["kind"].refuse("a figure of the case's trades, of which it has none");
+  if (!figure["trade"].present()) return "";
+  std::vector<std::string> titles;
+  for (const TradeRequest& trade : read.trades) titles.push_back(trade.title);
+  return figure["trade"].one_of(titles);
+}
+
 /// What the metrics are drawn over, and the published curves beside them.
 void read_trend(const JsonPlace& place, const Case& read, FigureRequest& figure) {
   figure.abscissa = read_metric(place["abscissa"], read);
@@ -371,7 +382,7 @@ FigureRequest read_figure(const JsonPlace& place, const Case& read) {
       is_element_case(read) ? std::vector<std::string>{"bars", "curves", "decomposition", "comparison"}
                             : std::vector<std::string>{"profiles", "convergence", "bars", "history", "curves",
                                                        "fields", "model", "decomposition", "comparison",
-                                                       "pairs", "trend"});
+                                                       "pairs", "trend", "trade"});
   place.allow_only(figure_keys(figure.kind));
   figure.id = place["id"].own_identifier(ids_of(read.figures));
   figure.caption = place["caption"].text();
@@ -390,6 +401,8 @@ FigureRequest read_figure(const JsonPlace& place, const Case& read) {
     figure.view = read_view(place["view"]);
   } else if (figure.kind == "model") {
     require_two_dimensions(place["kind"], read);
+  } else if (figure.kind == "trade") {
+    figure.trade = read_trade_title(place, read);
   } else if (figure.kind == "pairs") {
     figure.pairs = read_some_names(place["pairs"], ids_of(read.pairs), "pairs of the case, which has none");
   } else if (figure.kind != "comparison") {
@@ -529,6 +542,8 @@ void read_parts(Case& read) {
   if (const JsonPlace figures = place["figures"]; figures.present()) {
     for (const JsonPlace& figure : figures.elements()) read.figures.push_back(read_figure(figure, read));
   }
+  // Last, since it depends on all that the case asks for, and what it asks for is checked against the scene as written.
+  for (RunRequest& run : read.runs) choose_model(read, run);
 }
 
 /// The second, independent net: what the published schema refuses is refused, whatever the reader above

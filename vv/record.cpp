@@ -19,7 +19,9 @@
 #include <system_error>
 
 #include "vv/metamorphic.hpp"
+#include "vv/precision_pilots.hpp"
 #include "vv/sampler.hpp"
+#include "vv/sufficient_model.hpp"
 
 namespace mpm::vv {
 namespace {
@@ -150,6 +152,18 @@ std::map<std::string, double> measured_from_json(const Json& json) {
   std::map<std::string, double> measured;
   for (const auto& [name, value] : json.items()) measured[name] = number_from(value);
   return measured;
+}
+
+std::vector<ModelChoice> model_from_json(const Json& json) {
+  std::vector<ModelChoice> model;
+  for (const Json& entry : json) {
+    model.push_back({.what = entry.at("what").get<std::string>(),
+                     .written = entry.at("written").get<std::string>(),
+                     .used = entry.at("used").get<std::string>(),
+                     .reason = entry.at("reason").get<std::string>(),
+                     .numbers = measured_from_json(entry.at("numbers"))});
+  }
+  return model;
 }
 
 Json outcome_to_json(const Outcome& outcome) {
@@ -312,7 +326,10 @@ class Recorder {
         start_(simulation_.particles()),
         pending_(definition.snapshots) {
     const Observation now(simulation_);
-    for (const HistoryProbe& probe : definition.probes) samplers_.emplace_back(probe, scene_, now);
+    for (const HistoryProbe& probe : definition.probes) {
+      const SimulatedProbe seen = simulated(probe, request);
+      samplers_.emplace_back(seen.probe, scene_, now, seen.factor);
+    }
     for (Sampler& sampler : samplers_) sampler.sample(now, simulation_.time_step());
     take_snapshots(now);
   }
@@ -439,10 +456,10 @@ class Recorder {
     return record;
   }
 
-  /// The factor by which a ramp has changed a body's density. The particles carry the density of the last
+  /// The factor by which a ramp has changed a body's mass. The particles carry the density of the last
   /// step's beginning.
   double growth_of(const Body& body) const {
-    if (!body.density_ramp || simulation_.steps() == 0) return 1.0;
+    if (!body.density_ramp || body.inertia || simulation_.steps() == 0) return 1.0;
     const double time = static_cast<double>(simulation_.steps() - 1) * simulation_.time_step();
     return body.density_at(time) / body.density;
   }
@@ -605,9 +622,20 @@ double difference_to(const Scene& scene, const std::string& metamorphosis, const
   return largest_difference(end, mapped_back(scene, other.particles(), other.time(), metamorphosis));
 }
 
-Record record_scene(const Case& definition, const RunRequest& request, const Pulse& pulse) {
+/// The request once pilots, if it asks for any, have told its precision.
+RunRequest with_precision(RunRequest request, const Pulse& pulse) {
+  if (request.model_request.precision == Decision::as_written) return request;
+  request.model.push_back(choose_precision(request, pulse));
+  request.scene.precision =
+      request.model.back().used == "float" ? Precision::float32 : Precision::float64;
+  return request;
+}
+
+Record record_scene(const Case& definition, const RunRequest& asked, const Pulse& pulse) {
+  const RunRequest request = with_precision(asked, pulse);
   Recorder recorder(definition, request, pulse);
   Record record = recorder.run();
+  record.model = request.model;
   for (const std::string& metamorphosis : definition.metamorphoses) {
     if (!record.completed()) break;  // a state without an end has no other description of it
     const double difference = difference_to(request.scene, metamorphosis, recorder.particles(), pulse);
@@ -640,6 +668,18 @@ std::string ending_of(const Record& record) {
   return text;
 }
 
+Json model_to_json(const std::vector<ModelChoice>& model) {
+  Json json = Json::array();
+  for (const ModelChoice& choice : model) {
+    json.push_back({{"what", choice.what},
+                    {"written", choice.written},
+                    {"used", choice.used},
+                    {"reason", choice.reason},
+                    {"numbers", measured_to_json(choice.numbers)}});
+  }
+  return json;
+}
+
 Json to_json(const Record& record) {
   return {{"schema", record_schema},
           {"case_id", record.case_id},
@@ -669,6 +709,7 @@ Json to_json(const Record& record) {
           {"profile", profile_to_json(record.profile)},
           {"histories", histories_to_json(record.histories)},
           {"snapshots", snapshots_to_json(record.snapshots)},
+          {"model", model_to_json(record.model)},
           {"paths", paths_to_json(record.paths)},
           {"measured", measured_to_json(record.measured)}};
 }
@@ -703,6 +744,7 @@ Record record_from_json(const Json& json) {
   record.profile = profile_from_json(json.at("profile"));
   record.histories = histories_from_json(json.at("histories"));
   record.snapshots = snapshots_from_json(json.at("snapshots"));
+  record.model = model_from_json(json.at("model"));
   record.paths = paths_from_json(json.at("paths"));
   record.measured = measured_from_json(json.at("measured"));
   return record;
@@ -722,6 +764,8 @@ std::string input_hash(const Case& definition, const RunRequest& request) {
                 {"probes", Json::array()}};
   for (const HistoryProbe& probe : definition.probes)
     input["probes"].push_back(essence_of(probe, request.scene));
+  // The text alone does not tell: what is chosen depends on what else the case asks for.
+  if (request.width) input["dimension"] = request.scene.dimension;
   for (const SnapshotRequest& snapshot : definition.snapshots) {
     input["snapshots"].push_back({{"when", static_cast<int>(snapshot.when)},
                                   {"time", snapshot.time},

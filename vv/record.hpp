@@ -79,6 +79,7 @@ struct Record {
       measured;  ///< metrics that the record's states alone cannot tell, by name; of other descriptions of a
                  ///< scene, and of an element test what only the law itself knows
   std::vector<Snapshot> snapshots;  ///< in the order they were taken
+  std::vector<ModelChoice> model;   ///< what was simulated instead of what was written, and what was left as it is
   std::vector<ElementCurve> paths;  ///< of an element test, over the imposed strain
   Cost cost;
 
@@ -91,6 +92,9 @@ std::string ending_of(const Record& record);
 
 /// Every number comes back with the same bits; NaN and infinities travel as "nan", "inf" and "-inf".
 Json to_json(const Record& record);
+
+/// What was chosen of a run's model, with all its numbers.
+Json model_to_json(const std::vector<ModelChoice>& model);
 
 /// The inverse of `to_json`. Throws std::exception for anything that is not a whole record.
 Record record_from_json(const Json& json);

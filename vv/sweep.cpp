@@ -344,6 +344,7 @@ RunRequest read_run(const Subject& subject, const std::vector<SweepAxis>& sweep,
     CheckedSubject checked = read_checked(resolved);
     run.scene = std::move(checked.scene);
     run.motion = std::move(checked.motion);
+    run.model_request = checked.model;
     run.element = std::move(checked.element);
   } catch (const Refusal& refusal) {
     refuse_run(refusal, subject, sweep, choice);

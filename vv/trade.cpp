@@ -102,6 +102,8 @@ class CurveProblem {
       : runs_(runs), request_(request), abscissae_(abscissae_over(request.from, request.up_to)) {
     for (const std::vector<Selector>& family : request.finest)
       families_.push_back(common(selected_runs(definition, family), members));
+    is_baseline_ = families_.empty();
+    if (is_baseline_) families_.push_back(common(selected_runs(definition, request.baseline), members));
     for (const Runs& family : families_) curves_.push_back(curve_of_family(family));
     if (lack_.empty()) build_reference();
   }
@@ -113,14 +115,14 @@ class CurveProblem {
                        [&](const Runs& family) { return is_among(run, family); });
   }
 
-  /// By the families that the run is not part of.
+  /// By the families that the run is not part of; by the baseline in any case.
   Error error_of(std::size_t run) const {
     const CurveReading own = read(run);
     if (!own.lack.empty()) return {.failure = own.lack};
     if (!lack_.empty()) return {.failure = lack_};
     std::vector<Values> judges;
     for (std::size_t k = 0; k < families_.size(); ++k)
-      if (!is_among(run, families_[k])) judges.push_back(curves_[k]);
+      if (is_baseline_ || !is_among(run, families_[k])) judges.push_back(curves_[k]);
     return finite_or(curve_distance(abscissae_, mean_of(judges), own.y).l2,
                      "the distance from the reference is not a finite number");
   }
@@ -157,7 +159,8 @@ class CurveProblem {
     std::vector<std::string> names;
     for (const Runs& family : families_)
       for (const std::size_t run : family) names.push_back(name_of_run(run));
-    reference_.source = fmt::format("mean of {}", fmt::join(names, " and "));
+    reference_.source =
+        is_baseline_ ? names.front() : fmt::format("mean of {}", fmt::join(names, " and "));
   }
 
   std::string name_of_run(std::size_t run) const {
@@ -169,6 +172,7 @@ class CurveProblem {
   Values abscissae_;
   std::vector<Runs> families_;
   std::vector<Values> curves_;  ///< of the families
+  bool is_baseline_ = false;    ///< the only family, taken for what it is
   std::string lack_;
   TradeReference reference_;
 };

@@ -73,6 +73,23 @@ std::vector<std::vector<Selector>> read_finest(const JsonPlace& place, const Cas
   return finest;
 }
 
+/// One run of each problem.
+std::vector<Selector> read_baseline(const JsonPlace& place, const Case& read,
+                                    const std::vector<std::string>& problems) {
+  const std::vector<Selector> baseline = read_where(place, read.sweep);
+  const std::vector<std::size_t> runs = selected_runs(read, baseline);
+  for (const RunGroup& problem : groups_alike_in(read, problems)) {
+    const auto count = std::count_if(problem.runs.begin(), problem.runs.end(), [&](std::size_t run) {
+      return std::find(runs.begin(), runs.end(), run) != runs.end();
+    });
+    if (count != 1) {
+      place.refuse("one run of every problem", ", which selects " + std::to_string(count) + " like the one" +
+                                                   in_run(read.runs[problem.runs.front()]));
+    }
+  }
+  return baseline;
+}
+
 double read_end(const JsonPlace& place, const CurveKind& kind) {
   return place.quantity(kind.abscissa == "time" ? QuantityKind::time : QuantityKind::length);
 }
@@ -82,7 +99,12 @@ void read_curve(const JsonPlace& place, const Case& read, TradeRequest& trade) {
   trade.curve = place["curve"].one_of(names_of(kinds));
   const CurveKind& kind = *std::find_if(kinds.begin(), kinds.end(),
                                         [&](const CurveKind& each) { return each.name == trade.curve; });
-  trade.finest = read_finest(place["finest"], read, trade.problems);
+  if (const JsonPlace baseline = place["baseline"]; baseline.present()) {
+    if (place["finest"].present()) place["finest"].refuse("no finest runs beside a baseline");
+    trade.baseline = read_baseline(baseline, read, trade.problems);
+  } else {
+    trade.finest = read_finest(place["finest"], read, trade.problems);
+  }
   trade.from = read_end(place["from"], kind);
   trade.up_to = read_end(place["up_to"], kind);
   if (!(trade.up_to > trade.from)) place["up_to"].refuse("an end beyond where the stretch begins");
@@ -96,7 +118,7 @@ TradeRequest read_trade(const JsonPlace& place, const Case& read, const std::vec
                         const std::function<std::string(const JsonPlace&)>& read_metric) {
   std::vector<std::string> keys = {"title", "metric", "problems", "family", "asked"};
   const bool of_curve = place["curve"].present();
-  if (of_curve) keys = {"title", "curve", "finest", "from", "up_to", "within", "problems", "family", "asked"};
+  if (of_curve) keys = {"title", "curve", "finest", "baseline", "from", "up_to", "within", "problems", "family", "asked"};
   place.allow_only(keys);
   TradeRequest trade;
   trade.title = place["title"].text();

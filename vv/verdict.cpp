@@ -201,6 +201,7 @@ Json run_to_json(const RunVerdict& run) {
             {"steps", record.cost.steps},
             {"particle_steps", record.cost.particle_steps},
             {"memory_bytes", record.cost.memory_bytes}}},
+          {"model", model_to_json(record.model)},
           {"comparisons", comparisons_to_json(run.comparisons)},
           {"gates", gates_to_json(run.gates)},
           {"time_step", number(record.time_step)},

@@ -241,6 +241,7 @@ TEST(Trade, a_curve_that_breaks_off_has_a_failure) {
   definition.trades = {of_curve()};
   std::vector<RunVerdict> runs = all_ended(definition);
   for (RunVerdict& run : runs) run.curves = {line(1.0)};
+  runs[1].curves = {line(1.1)};
   runs[2].curves = {line(1.0, 0.0, 0.0, 0.9)};
   runs[3].curves.clear();
   runs[4].record.outcome.ending = Ending::not_finite;  // although the curve is whole
