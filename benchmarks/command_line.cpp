@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "benchmarks/comparison.hpp"
+#include "benchmarks/features.hpp"
 #include "benchmarks/measuring.hpp"
 #include "benchmarks/table.hpp"
 #include "vv/revision.hpp"
@@ -25,7 +26,7 @@ enum ExitCode { all_good = 0, became_slower = 1, bad_input = 2 };
 struct Arguments {
   std::string json, filter, against;
   std::vector<std::string> compared;
-  bool quick = false, footing = false;
+  bool quick = false, footing = false, features = false;
 };
 
 /// One line on standard error, whatever the text.
@@ -81,20 +82,27 @@ Results circumstances(const Effort& effort) {
 struct Suite {
   std::vector<StepBenchmark> steps;
   std::vector<Kernel> kernels;
+  std::vector<Feature> features;
 };
 
 Suite suite_of(const Arguments& arguments) {
-  Suite suite{step_benchmarks(arguments.quick), shape_function_kernels()};
-  for (Kernel& kernel : law_kernels()) suite.kernels.push_back(std::move(kernel));
-  for (Kernel& kernel : transfer_kernels()) suite.kernels.push_back(std::move(kernel));
+  Suite suite{.steps = {}, .kernels = {}, .features = features()};
+  if (!arguments.features) {
+    suite.steps = step_benchmarks(arguments.quick);
+    for (const auto& kernels : {shape_function_kernels(), law_kernels(), transfer_kernels()}) {
+      suite.kernels.insert(suite.kernels.end(), kernels.begin(), kernels.end());
+    }
+  }
   try {
     const std::regex filter(arguments.filter);
     std::erase_if(suite.steps, [&](const auto& step) { return !std::regex_search(step.name(), filter); });
     std::erase_if(suite.kernels, [&](const auto& kernel) { return !std::regex_search(kernel.name, filter); });
+    std::erase_if(suite.features,
+                  [&](const auto& feature) { return !std::regex_search(feature.name, filter); });
   } catch (const std::regex_error& error) {
     throw std::runtime_error("--filter " + arguments.filter + ": not a regular expression: " + error.what());
   }
-  if (suite.steps.empty() && suite.kernels.empty() && !arguments.footing) {
+  if (suite.steps.empty() && suite.kernels.empty() && suite.features.empty() && !arguments.footing) {
     throw std::runtime_error("--filter " + arguments.filter + ": nothing of that name");
   }
   return suite;
@@ -130,7 +138,11 @@ int measure_all(const Arguments& arguments) {
   if (!suite.steps.empty() || !suite.kernels.empty()) {
     mishaps = measure(suite.steps, suite.kernels, effort, progress, results);
   }
-  if (arguments.filter.empty()) {
+  if (!suite.features.empty()) {
+    const FeatureEffort features_effort = arguments.quick ? FeatureEffort{9, 7, 0.0015} : FeatureEffort{};
+    results.features = measure_features(suite.features, features_effort, progress, mishaps.errors);
+  }
+  if (arguments.filter.empty() && !arguments.features) {
     progress("memory and start-up");
     results.memory = measure_memory();
     results.start_up = measure_start_up();
@@ -168,6 +180,8 @@ int command_line(int argc, char** argv) {
   auto* filter = app.add_option("--filter", arguments.filter,
                                 "only what has a name that matches; no memory, no start-up")
                      ->type_name("REGEX");
+  auto* features = app.add_flag("--features", arguments.features,
+                                "only what features cost, and that unused ones cost nothing");
   auto* footing = app.add_flag("--footing", arguments.footing,
                                "also the paper's footing from beginning to end (minutes)");
   auto* against = app.add_option("--against", arguments.against, "compare with the results of another time")
@@ -175,7 +189,7 @@ int command_line(int argc, char** argv) {
   auto* compare = app.add_option("--compare", arguments.compared, "compare two files, measure nothing")
                       ->expected(2)
                       ->type_name("OLD.json NEW.json");
-  for (auto* option : {json, quick, filter, footing, against}) compare->excludes(option);
+  for (auto* option : {json, quick, filter, features, footing, against}) compare->excludes(option);
   try {
     app.parse(argc, argv);
     return run(arguments);

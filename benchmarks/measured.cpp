@@ -22,6 +22,22 @@ Measured summary_of(const std::vector<double>& repetitions) {
   return {middle, *low, *high};
 }
 
+Measured interval_of_median(std::vector<double> values) {
+  const double middle = median(values);
+  std::sort(values.begin(), values.end());
+  const double n = static_cast<double>(values.size());
+  // The chance of exactly `heads` heads, then of as many or fewer.
+  double exactly = std::pow(0.5, n), at_most = exactly;
+  std::size_t heads = 0;
+  while (at_most <= 0.025) {
+    ++heads;
+    exactly *= (n - static_cast<double>(heads) + 1) / static_cast<double>(heads);
+    at_most += exactly;
+  }
+  const std::size_t outermost = heads > 0 ? heads - 1 : 0;
+  return {middle, values[outermost], values[values.size() - 1 - outermost]};
+}
+
 std::vector<Repetition> least_disturbed(std::vector<Repetition> all) {
   constexpr std::size_t fewest = 3;
   std::stable_sort(all.begin(), all.end(),

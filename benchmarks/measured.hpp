@@ -24,6 +24,12 @@ double median(std::vector<double> values);
 /// Throws as `median`.
 Measured summary_of(const std::vector<double>& repetitions);
 
+/// The median, and an interval that holds the median of ever more repetitions with a probability of at least
+/// 95 %, whatever their distribution: from the k-th smallest value to the k-th largest, where fewer than k of
+/// so many fair coins show heads in at most 2.5 % of all throws; of fewer than six values all. Throws as
+/// `median`.
+Measured interval_of_median(std::vector<double> values);
+
 /// One measurement of a rate.
 struct Repetition {
   double rate;

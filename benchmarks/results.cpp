@@ -67,6 +67,33 @@ Json json_of(const MemoryResult& memory) {
 
 Json json_of(const StartUpResult& start) { return {{"scene", start.scene}, {"seconds", start.seconds}}; }
 
+Json json_of(const FeatureCost& cost) {
+  return json_of({{"what", cost.what},
+                  {"particles", cost.particles},
+                  {"time_step", cost.time_step},
+                  {"bytes", cost.bytes}},
+                 "step", cost.step);
+}
+
+Json json_of(const SpelledResult& spelled) {
+  Json json =
+      json_of({{"what", spelled.what}, {"of", spelled.of_with ? "with" : "without"}}, "ratio", spelled.ratio);
+  json["bytes"] = spelled.bytes;
+  json["same_bits"] = spelled.same_bits;
+  json["verdict"] = name_of(spelled.verdict());
+  return json;
+}
+
+Json json_of(const FeatureResult& feature) {
+  Json json = json_of({{"name", feature.name},
+                       {"title", feature.title},
+                       {"without", json_of(feature.without)},
+                       {"with", json_of(feature.with)}},
+                      "ratio", feature.ratio);
+  json["spelled"] = feature.spelled ? json_of(*feature.spelled) : Json(nullptr);
+  return json;
+}
+
 template <class Entry>
 Json array_of(const std::vector<Entry>& entries) {
   Json array = Json::array();
@@ -134,6 +161,40 @@ StartUpResult read_start_up(const JsonPlace& place) {
   return {place["scene"].text(), place["seconds"].number()};
 }
 
+std::int64_t read_bytes(const JsonPlace& place) {
+  if (!place.present() || !place.value().is_number_integer()) place.refuse("a whole number");
+  return place.value().get<std::int64_t>();
+}
+
+FeatureCost read_feature_cost(const JsonPlace& place) {
+  return {.what = place["what"].text(),
+          .particles = place["particles"].integer(),
+          .time_step = place["time_step"].number(),
+          .bytes = read_bytes(place["bytes"]),
+          .step = read_measured(place, "step")};
+}
+
+SpelledResult read_spelled(const JsonPlace& place) {
+  return {.what = place["what"].text(),
+          .of_with = place["of"].one_of({"with", "without"}) == "with",
+          .ratio = read_measured(place, "ratio"),
+          .bytes = read_bytes(place["bytes"]),
+          .same_bits = place["same_bits"].flag()};
+}
+
+FeatureResult read_feature(const JsonPlace& place) {
+  FeatureResult feature{.name = place["name"].text(),
+                        .title = place["title"].text(),
+                        .without = read_feature_cost(place["without"]),
+                        .with = read_feature_cost(place["with"]),
+                        .ratio = read_measured(place, "ratio"),
+                        .spelled = std::nullopt};
+  const JsonPlace spelled = place["spelled"];
+  if (!spelled.present()) spelled.refuse("an object or null");
+  if (!spelled.value().is_null()) feature.spelled = read_spelled(spelled);
+  return feature;
+}
+
 template <class Read>
 auto read_all(const JsonPlace& place, Read read) {
   std::vector<decltype(read(place))> entries;
@@ -170,9 +231,11 @@ Results read_all_of(const JsonPlace& place) {
   results.runs = read_all(place["runs"], read_run);
   results.memory = read_all(place["memory"], read_memory);
   results.start_up = read_all(place["start_up"], read_start_up);
+  if (place["features"].present()) results.features = read_all(place["features"], read_feature);
   require_own_names(place["limits"], results.limits);
   require_own_names(place["steps"], results.steps);
   require_own_names(place["kernels"], results.kernels);
+  require_own_names(place["features"], results.features);
   return results;
 }
 
@@ -192,6 +255,16 @@ void write(const std::string& text, const std::filesystem::path& file) {
 
 }  // namespace
 
+SpelledResult::Verdict SpelledResult::verdict() const {
+  if (ratio.high <= 1 + free_limit) return Verdict::within_limit;
+  return ratio.low <= 1 + free_limit ? Verdict::within_noise : Verdict::beyond;
+}
+
+std::string name_of(SpelledResult::Verdict verdict) {
+  using enum SpelledResult::Verdict;
+  return verdict == within_limit ? "within_limit" : verdict == within_noise ? "within_noise" : "beyond";
+}
+
 Json json_of(const Results& results) {
   return {{"format", format},
           {"revision", results.revision},
@@ -208,7 +281,8 @@ Json json_of(const Results& results) {
           {"kernels", array_of(results.kernels)},
           {"runs", array_of(results.runs)},
           {"memory", array_of(results.memory)},
-          {"start_up", array_of(results.start_up)}};
+          {"start_up", array_of(results.start_up)},
+          {"features", array_of(results.features)}};
 }
 
 Results parse_results(const std::string& text, const std::string& file) {

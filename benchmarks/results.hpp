@@ -23,7 +23,7 @@ struct StepResult {
   int threads = 1;
   Measured rate;
   std::optional<double> target;
-  double bytes = 0.0, flops = 0.0;  ///< a particle and step, of the model in step_cost.hpp
+  double bytes = 0.0, flops = 0.0;  ///< a particle and step, of the count in vv/step_cost.hpp
   double share_of_bandwidth =
       0.0;                     ///< bytes times rate over the triad of the memory that holds the scene [-]
   double share_of_peak = 0.0;  ///< flops times rate over the peak [-]
@@ -65,6 +65,43 @@ struct StartUpResult {
   friend bool operator==(const StartUpResult&, const StartUpResult&) = default;
 };
 
+/// A scene with a feature, or without it.
+struct FeatureCost {
+  std::string what;  ///< "Mohr–Coulomb, all of it elastic"
+  std::int64_t particles = 0;
+  double time_step = 0.0;  ///< [s]
+  std::int64_t bytes = 0;  ///< `Simulation::memory`
+  Measured step;           ///< wall time of a step, and the interval of its median [s]
+  friend bool operator==(const FeatureCost&, const FeatureCost&) = default;
+};
+
+/// A scene that says in so many words what another leaves to the default.
+struct SpelledResult {
+  enum class Verdict { within_limit, within_noise, beyond };
+
+  std::string what;      ///< "damping: 0"
+  bool of_with = false;  ///< the other scene is the one with the feature, else the one without
+  Measured ratio;        ///< wall time of a step over that of the other scene, and the interval of its median
+  std::int64_t bytes = 0;
+  bool same_bits = false;  ///< of all particles in the end
+
+  /// Whether it takes at most `free_limit` more time: certainly, or as far as the noise lets one say.
+  Verdict verdict() const;
+  friend bool operator==(const SpelledResult&, const SpelledResult&) = default;
+};
+/// What does not take more than this share of time is free [-].
+inline constexpr double free_limit = 0.02;
+std::string name_of(SpelledResult::Verdict verdict);  ///< "within_limit"
+
+/// What a feature costs.
+struct FeatureResult {
+  std::string name, title;
+  FeatureCost without, with;
+  Measured ratio;  ///< wall time of a step with over without, and the interval of its median
+  std::optional<SpelledResult> spelled;
+  friend bool operator==(const FeatureResult&, const FeatureResult&) = default;
+};
+
 /// All that one execution of the benchmarks has measured, and where.
 struct Results {
   std::string revision;   ///< of the sources
@@ -83,6 +120,7 @@ struct Results {
   std::vector<RunResult> runs;
   std::vector<MemoryResult> memory;
   std::vector<StartUpResult> start_up;
+  std::vector<FeatureResult> features;
   friend bool operator==(const Results&, const Results&) = default;
 };
 

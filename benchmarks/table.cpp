@@ -71,6 +71,37 @@ std::string start_up_of(const Results& results) {
   return text;
 }
 
+std::string row_of(const FeatureResult& feature) {
+  const auto per_particle = [](const FeatureCost& cost, double of_scene) {
+    return of_scene / static_cast<double>(cost.particles);
+  };
+  const auto cost_of = [&](const FeatureCost& cost) {
+    return fmt::format("{:>7.1f} {:>6.0f}", 1e9 * per_particle(cost, cost.step.value),
+                       per_particle(cost, static_cast<double>(cost.bytes)));
+  };
+  std::string text =
+      fmt::format("  {:<27} {:<32} {:<46} {} {} {:>8.3f} {:.3f} - {:.3f}\n", feature.name,
+                  feature.without.what, feature.with.what, cost_of(feature.without), cost_of(feature.with),
+                  feature.ratio.value, feature.ratio.low, feature.ratio.high);
+  if (!feature.spelled) return text;
+  const SpelledResult& spelled = *feature.spelled;
+  const FeatureCost& unsaid = spelled.of_with ? feature.with : feature.without;
+  return text + fmt::format("  {:<27} {:<32} {:<46} {:>29} {:>8.3f} {:.3f} - {:.3f}, {}, {} bits\n", "",
+                            spelled.what, "said, over left out",
+                            fmt::format("{:+} B", spelled.bytes - unsaid.bytes), spelled.ratio.value,
+                            spelled.ratio.low, spelled.ratio.high, name_of(spelled.verdict()),
+                            spelled.same_bits ? "the same" : "OTHER");
+}
+
+std::string features_of(const Results& results) {
+  if (results.features.empty()) return "";
+  std::string text =
+      fmt::format("\n{:<29} {:<32} {:<46} {:>14} {:>14} {:>8} {}\n", "what features cost", "without", "with",
+                  "ns and B without", "with", "ratio", "of a step's time, and its interval");
+  for (const FeatureResult& feature : results.features) text += row_of(feature);
+  return text + "  nanoseconds and bytes a particle; steps of the whole scene are compared\n";
+}
+
 std::string runs_of(const Results& results) {
   if (results.runs.empty()) return "";
   std::string text = "\nfrom beginning to end\n";
@@ -89,7 +120,7 @@ std::string runs_of(const Results& results) {
 
 std::string text_of(const Results& results) {
   return heading_of(results) + limits_of(results) + steps_of(results) + kernels_of(results) +
-         memory_of(results) + start_up_of(results) + runs_of(results);
+         memory_of(results) + start_up_of(results) + features_of(results) + runs_of(results);
 }
 
 }  // namespace mpm::bench

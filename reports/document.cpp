@@ -10,8 +10,10 @@
 #include <set>
 #include <string_view>
 
+#include "reports/advice_section.hpp"
 #include "reports/canvas.hpp"
 #include "reports/figures.hpp"
+#include "reports/model_choices.hpp"
 #include "reports/page_data.hpp"
 #include "reports/performance_section.hpp"
 #include "reports/trade_section.hpp"
@@ -518,8 +520,10 @@ data case_section(const vv::CaseVerdict& verdict, const std::vector<DrawnFigure>
               {"not_run_reason", verdict.status == vv::CaseStatus::not_run ? verdict.not_run_reason : ""}});
   set_exact_solutions(section, definition);
   section.set("figures", figure_entries(verdict, figures, figure_number));
+  set_model_choices(section, verdict);
   set_validation(section, verdict);
   set_trades(section, verdict);
+  set_advice(section, verdict);
   const std::vector<PlacedGate> gates = gates_of(verdict);
   set_list(section, "gates", gate_groups(gates, false));
   set_list(section, "controls", gate_groups(gates, true));

@@ -98,10 +98,16 @@ struct WordsOfLaw {
 std::vector<std::string> density_lines(const Body& body) {
   const std::string start = "<i>ρ</i> = " + number(body.density);
   const auto& ramp = body.density_ramp;
-  if (!ramp) return {start + " kg/m³"};
-  return {start + " → " + number(ramp->final_density) + " kg/m³,",
-          fmt::format("linear from <i>t</i> = {} s to {} s", number(ramp->start),
-                      number(ramp->start + ramp->duration))};
+  std::vector<std::string> lines{start + " kg/m³"};
+  if (ramp) {
+    std::string densities = start;
+    for (const DensityStage& stage : ramp->stages) densities += " → " + number(stage.density);
+    lines = {densities + " kg/m³,", fmt::format("{} from <i>t</i> = {} s to {} s",
+                                                ramp->stages.size() == 1 ? "linear" : "in stages",
+                                                number(ramp->start), number(ramp->end()))};
+  }
+  if (body.inertia) lines.push_back("inertia of " + number(*body.inertia) + " kg/m³");
+  return lines;
 }
 
 std::string vector_text(const PerAxis& v, double factor) {

@@ -101,6 +101,33 @@ MemoryUse memory(const JsonPlace& place) {
 
 StartUp start_up(const JsonPlace& place) { return {place["scene"].text(), not_negative(place["seconds"])}; }
 
+FeatureCost feature_cost(const JsonPlace& place) {
+  return {place["what"].text(), count(place["particles"]), positive(place["time_step"]),
+          count(place["bytes"]), measured(place, "step")};
+}
+
+SpelledDefault spelled_default(const JsonPlace& place) {
+  return {.what = place["what"].text(),
+          .of_with = place["of"].one_of({"with", "without"}) == "with",
+          .ratio = measured(place, "ratio"),
+          .bytes = count(place["bytes"]),
+          .same_bits = place["same_bits"].flag(),
+          .verdict = place["verdict"].one_of({"within_limit", "within_noise", "beyond"})};
+}
+
+FeaturePrice feature(const JsonPlace& place) {
+  FeaturePrice feature{.name = place["name"].text(),
+                       .title = place["title"].text(),
+                       .without = feature_cost(place["without"]),
+                       .with = feature_cost(place["with"]),
+                       .ratio = measured(place, "ratio"),
+                       .spelled = std::nullopt};
+  const JsonPlace spelled = place["spelled"];
+  if (!spelled.present()) spelled.refuse("an object or null");
+  if (!spelled.value().is_null()) feature.spelled = spelled_default(spelled);
+  return feature;
+}
+
 template <class Entry>
 std::vector<Entry> entries(const JsonPlace& place, Entry (*read)(const JsonPlace&)) {
   std::vector<Entry> all;
@@ -140,6 +167,7 @@ Performance performance(const JsonPlace& root) {
   result.runs = entries(root["runs"], run);
   result.memory = entries(root["memory"], memory);
   result.start_up = entries(root["start_up"], start_up);
+  if (root["features"].present()) result.features = entries(root["features"], feature);
   return result;
 }
 

@@ -67,6 +67,38 @@ struct StartUp {
   double seconds = 0.0;
 };
 
+/// A scene that has a feature, or does without.
+struct FeatureCost {
+  std::string what;  ///< in a few words
+  std::int64_t particles = 0;
+  double time_step = 0.0;  ///< [s]
+  std::int64_t bytes = 0;
+  Measured step;  ///< wall time of a step, within the interval of its median [s]
+
+  double per_particle(double of_scene) const { return of_scene / static_cast<double>(particles); }
+};
+
+/// A scene that says in so many words what another leaves to the default.
+struct SpelledDefault {
+  std::string what;        ///< "damping: 0"
+  bool of_with = false;    ///< the other scene is the one with the feature, else the one without
+  Measured ratio;          ///< wall time of a step over that of the other scene, within its interval
+  std::int64_t bytes = 0;  ///< of the scene that says it
+  bool same_bits = false;  ///< whether both end in the same state
+  std::string verdict;     ///< within_limit, within_noise or beyond: whether it takes 2 % more time
+};
+
+/// What something costs that a scene may have.
+struct FeaturePrice {
+  std::string name, title;
+  FeatureCost without, with;
+  Measured ratio;  ///< wall time of a step with over without, within the interval of its median
+  std::optional<SpelledDefault> spelled;
+
+  /// The same for a second of simulated time.
+  double ratio_of_time() const { return ratio.median * without.time_step / with.time_step; }
+};
+
 /// All that one call of the benchmark program measured.
 struct Performance {
   std::filesystem::path file;
@@ -85,6 +117,7 @@ struct Performance {
   std::vector<TimedRun> runs;
   std::vector<MemoryUse> memory;
   std::vector<StartUp> start_up;
+  std::vector<FeaturePrice> features;  ///< empty in files that do not have them
 
   /// The revision as the program and the report name theirs: with "-dirty" if the source was modified.
   std::string full_revision() const;

@@ -206,6 +206,76 @@ void set_memory_and_start_up(PageData& page, const Performance& measured) {
   set_list(page, "start_up", start_up);
 }
 
+// ---- features ----
+
+double per_particle_step(const FeatureCost& cost) { return cost.per_particle(cost.step.median); }
+
+double bytes_per_particle(const FeatureCost& cost) {
+  return cost.per_particle(static_cast<double>(cost.bytes));
+}
+
+std::string verdict_chip(const SpelledDefault& spelled) {
+  if (spelled.verdict == "within_limit") return chip("pass", "WITHIN 2 %");
+  if (spelled.verdict == "within_noise") return chip("open", "WITHIN NOISE");
+  return chip("contrary", "BEYOND 2 %");
+}
+
+/// What saying the default comes to; texts that are empty where it cannot be said.
+void set_spelled(PageData& row, const FeaturePrice& feature) {
+  row.set("spelled", flag(feature.spelled.has_value()));
+  if (!feature.spelled) return;
+  const SpelledDefault& spelled = *feature.spelled;
+  const std::int64_t more = spelled.bytes - (spelled.of_with ? feature.with : feature.without).bytes;
+  row.set("said", spelled.what);
+  row.set("said_ratio", number_markup(spelled.ratio.median, 4));
+  row.set("said_spread", from_to(spelled.ratio, 1.0, 4));
+  row.set("said_chip", verdict_chip(spelled));
+  row.set("said_bytes", more == 0 ? "equal" : fmt::format("{:+}", more));
+  row.set("bytes_bad", flag(more != 0));
+  row.set("said_bits", spelled.same_bits ? "the same" : "others");
+  row.set("bits_bad", flag(!spelled.same_bits));
+}
+
+/// "2 of 9 defaults ..."; nothing without defaults that can be said.
+std::string free_sentence(const std::vector<FeaturePrice>& features) {
+  std::size_t said = 0, free = 0, within = 0, noisy = 0;
+  for (const FeaturePrice& feature : features) {
+    if (!feature.spelled) continue;
+    const SpelledDefault& spelled = *feature.spelled;
+    ++said;
+    if (spelled.same_bits && spelled.bytes == (spelled.of_with ? feature.with : feature.without).bytes)
+      ++free;
+    if (spelled.verdict == "within_limit") ++within;
+    if (spelled.verdict == "within_noise") ++noisy;
+  }
+  if (said == 0) return "";
+  return fmt::format(
+      "{} of {} defaults that were said left every bit and byte as it was; {} took at most 2 % more time, "
+      "and "
+      "of {} the noise of this measurement does not let that be told.",
+      free, said, within, noisy);
+}
+
+void set_features(PageData& page, const Performance& measured) {
+  PageData rows = list();
+  for (const FeaturePrice& feature : measured.features) {
+    PageData row = object({{"title", feature.title},
+                           {"without", feature.without.what},
+                           {"with", feature.with.what},
+                           {"before", number_markup(1e9 * per_particle_step(feature.without))},
+                           {"after", number_markup(1e9 * per_particle_step(feature.with))},
+                           {"ratio", number_markup(feature.ratio.median)},
+                           {"spread", from_to(feature.ratio, 1.0)},
+                           {"of_time", number_markup(feature.ratio_of_time())},
+                           {"bytes_before", number_markup(bytes_per_particle(feature.without))},
+                           {"bytes_after", number_markup(bytes_per_particle(feature.with))}});
+    set_spelled(row, feature);
+    rows << row;
+  }
+  page.set("free_sentence", free_sentence(measured.features));
+  set_list(page, "features", rows);
+}
+
 void set_lacks(PageData& page, const Performance& measured) {
   PageData lacks = list();
   const auto say_if = [&lacks](bool lacking, const char* what) {
@@ -228,6 +298,7 @@ void set_lacks(PageData& page, const Performance& measured) {
   say_if(measured.kernels.empty(), "No kernel was measured by itself.");
   say_if(measured.memory.empty(), "Memory was not measured.");
   say_if(measured.start_up.empty(), "Start-up was not measured.");
+  say_if(measured.features.empty(), "What features cost was not measured.");
   set_list(page, "lacks", lacks);
 }
 
@@ -351,6 +422,7 @@ std::string performance_section(const PerformanceEvidence& evidence, const vv::C
     set_kernels(page, *evidence.measured);
     set_runs(page, *evidence.measured);
     set_memory_and_start_up(page, *evidence.measured);
+    set_features(page, *evidence.measured);
     set_lacks(page, *evidence.measured);
     set_list(page, "figures", figure_entries(figures, std::nullopt, number));
     page.set("history", history_entries(evidence, figures, number));

@@ -8,12 +8,14 @@
 namespace mpm {
 
 /// What acts on particles beside gravity: tractions on edges, the body force of a driven motion, and masses
-/// that change.
+/// that change; and what gravity does to bodies whose inertia is not their weight's.
 template <int Dim, class Real>
 class Loading {
  public:
   /// Gives the particles, in the order of their filling, the initial velocities of a driven motion.
   Loading(const Scene& scene, double time_step, Particles<Dim, Real>& particles) : scene_(scene) {
+    has_inertia_ = std::any_of(scene.bodies.begin(), scene.bodies.end(),
+                               [](const Body& body) { return body.inertia.has_value(); });
     for (const SurfaceLoad& load : scene.surface_loads) find_row(load, particles);
     if (!scene.driven_motion) return;
     for (const Body& body : scene.bodies) {
@@ -28,10 +30,10 @@ class Loading {
   }
 
   /// Whether there is any external force to scatter.
-  bool has_forces() const { return scene_.driven_motion || !rows_.empty(); }
+  bool has_forces() const { return scene_.driven_motion || !rows_.empty() || has_inertia_; }
 
-  /// Sets the external forces acting at `time` [s].
-  void set_forces(double time, Particles<Dim, Real>& particles) const {
+  /// Sets the external forces acting at `time` [s] under `gravity` [m/s^2].
+  void set_forces(double time, const Vector<Dim, Real>& gravity, Particles<Dim, Real>& particles) const {
     if (scene_.driven_motion) {
       for (std::size_t p = 0; p < start_.size(); ++p) {
         const PerAxis force = scene_.driven_motion->body_force(start_[p], time);
@@ -52,13 +54,14 @@ class Loading {
         }
       }
     }
+    if (has_inertia_) make_up_weights(time, gravity, particles);
   }
 
   /// Sets the masses of bodies whose density changes to those at `time` [s].
   void set_masses(double time, Particles<Dim, Real>& particles) const {
     for (std::size_t b = 0; b < scene_.bodies.size(); ++b) {
       const Body& body = scene_.bodies[b];
-      if (!body.density_ramp || time < body.density_ramp->start) continue;
+      if (!body.density_ramp || body.inertia || time < body.density_ramp->start) continue;
       const auto density = static_cast<Real>(body.density_at(time));
       const ParticleRange range = particles.bodies[b];
       for (Eigen::Index slot = range.first; slot < range.last; ++slot) {
@@ -75,6 +78,21 @@ class Loading {
     PerAxis force{};
     double ramp = 0.0;
   };
+
+  /// Gravity acts on the mass of nodes, which is that of inertia: what the weight is more (or less) is a force.
+  void make_up_weights(double time, const Vector<Dim, Real>& gravity, Particles<Dim, Real>& particles) const {
+    for (std::size_t b = 0; b < scene_.bodies.size(); ++b) {
+      const Body& body = scene_.bodies[b];
+      if (!body.inertia) continue;
+      const auto missing = static_cast<Real>(body.density_at(time) / *body.inertia - 1);
+      const ParticleRange range = particles.bodies[b];
+      const Eigen::Index count = range.last - range.first;
+      for (std::size_t a = 0; a < Dim; ++a) {
+        particles.external_force[a].segment(range.first, count) +=
+            missing * gravity[a] * particles.mass.segment(range.first, count);
+      }
+    }
+  }
 
   void find_row(const SurfaceLoad& load, const Particles<Dim, Real>& particles) {
     const auto body = static_cast<std::size_t>(
@@ -104,6 +122,7 @@ class Loading {
   }
 
   const Scene scene_;
+  bool has_inertia_ = false;
   std::vector<Row> rows_;
   std::vector<PerAxis> start_;  ///< initial places, of a driven motion only
 };

@@ -46,7 +46,7 @@ void place(const Scene& scene, const Body& body, const Lattice& lattice, Particl
       particles.stress[c][p] = static_cast<Real>(stress[c]);
     }
     particles.volume[p] = static_cast<Real>(volume);
-    particles.mass[p] = static_cast<Real>(body.density * volume);
+    particles.mass[p] = static_cast<Real>(body.inertia.value_or(body.density) * volume);
   }
 }
 
@@ -65,7 +65,10 @@ void reserve_optional_fields(const Scene& scene, Eigen::Index total, Particles<D
   }
   resize(particles.strain, scene.sums_strain ? total : 0);
   resize(particles.stress_work, scene.sums_work ? total : 0);
-  resize(particles.external_force, scene.driven_motion || !scene.surface_loads.empty() ? total : 0);
+  const bool has_forces = scene.driven_motion || !scene.surface_loads.empty() ||
+                          std::any_of(scene.bodies.begin(), scene.bodies.end(),
+                                      [](const Body& body) { return body.inertia.has_value(); });
+  resize(particles.external_force, has_forces ? total : 0);
   const bool grows_late = scene.update_order == UpdateOrder::usf && scene.scheme == Scheme::cpgimp;
   resize(particles.pending, scene.update_order == UpdateOrder::musl || grows_late ? total : 0);
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <numeric>
 #include <string_view>
 #include <utility>
 
@@ -142,10 +143,10 @@ void check_strength(const MohrCoulomb& law, const std::string& place) {
 void check_material(const Scene& scene, const Body& body, const std::string& place) {
   const double modulus = youngs_modulus_of(body.material);
   require_positive(modulus, place + "/youngs_modulus", "a modulus", "Pa");
-  const double wave_speed = std::sqrt(modulus / body.density);
+  const double wave_speed = std::sqrt(modulus / body.lightest());
   require(std::isfinite(wave_speed) && wave_speed > 0.0, place + "/youngs_modulus",
           "a modulus with which the wave speed sqrt(modulus / density) is a number above zero",
-          text_of(modulus, "Pa") + " at a density of " + text_of(body.density, "kg/m^3"));
+          text_of(modulus, "Pa") + " at a density of " + text_of(body.lightest(), "kg/m^3"));
   std::visit(Overloaded{[&](const LinearElastic& law) { check_poissons_ratio(law.poissons_ratio, place); },
                         [&](const MohrCoulomb& law) {
                           require(scene.dimension == 2, place + "/law", "a law for one dimension",
@@ -226,10 +227,14 @@ void require_ring_hits(const Scene& scene, const Body& body, const std::string& 
 void check_density_ramp(const Body& body, const std::string& place) {
   if (!body.density_ramp) return;
   const DensityRamp& ramp = *body.density_ramp;
-  require_positive(ramp.final_density, place + "/final_density", "a density", "kg/m^3");
   require(std::isfinite(ramp.start) && ramp.start >= 0.0, place + "/start", "a time, zero or above",
           text_of(ramp.start, "s"));
-  require_positive(ramp.duration, place + "/duration", "a time", "s");
+  require(!ramp.stages.empty(), place, "at least one stage", "none");
+  for (std::size_t i = 0; i < ramp.stages.size(); ++i) {
+    const std::string stage = i == 0 ? place : at_index(place + "/then", i - 1);
+    require_positive(ramp.stages[i].density, stage + (i == 0 ? "/final_density" : "/density"), "a density", "kg/m^3");
+    require_positive(ramp.stages[i].duration, stage + "/duration", "a time", "s");
+  }
 }
 
 void check_geostatic(const Scene& scene, const Body& body, const GeostaticStress& stress,
@@ -280,9 +285,13 @@ double check_body(const Scene& scene, const Body& body, const std::string& place
   for (std::size_t axis = 0; axis < axes_of(scene); ++axis) {
     require_finite(body.velocity[axis], at_index(place + "/velocity", axis), "velocity", "m/s");
   }
+  check_density_ramp(body, place + "/density_ramp");
+  if (body.inertia) {
+    require_positive(*body.inertia, place + "/inertia", "a density", "kg/m^3");
+    require(!scene.driven_motion, place + "/inertia", "none in a driven motion, whose forces go with the mass", "one");
+  }
   check_material(scene, body, place + "/material");
   check_ring(scene, body, place + "/ring");
-  check_density_ramp(body, place + "/density_ramp");
   double particles = 1.0;
   for (std::size_t axis = 0; axis < axes_of(scene); ++axis)
     particles *= check_extent(scene, body, axis, place);
@@ -524,10 +533,33 @@ std::size_t stage_at(const StagedLoading& staged, double time) {
 
 }  // namespace
 
+double DensityRamp::end() const {
+  return std::accumulate(stages.begin(), stages.end(), start,
+                         [](double time, const DensityStage& stage) { return time + stage.duration; });
+}
+
+double DensityRamp::lowest_density() const {
+  return std::min_element(stages.begin(), stages.end(), [](const DensityStage& a, const DensityStage& b) {
+           return a.density < b.density;
+         })->density;
+}
+
 double Body::density_at(double time) const {
   if (!density_ramp) return density;
-  const double done = std::clamp((time - density_ramp->start) / density_ramp->duration, 0.0, 1.0);
-  return density + done * (density_ramp->final_density - density);
+  double begin = density_ramp->start, from = density;
+  for (const DensityStage& stage : density_ramp->stages) {
+    if (time < begin + stage.duration) {
+      return from + std::max(time - begin, 0.0) / stage.duration * (stage.density - from);
+    }
+    begin += stage.duration;
+    from = stage.density;
+  }
+  return from;
+}
+
+double Body::lightest() const {
+  if (inertia) return *inertia;
+  return density_ramp ? std::min(density, density_ramp->lowest_density()) : density;
 }
 
 double RigidBody::speed_fraction(double time) const {
@@ -565,7 +597,7 @@ double loads_settled_after(const Scene& scene) {
   double latest = scene.gravity.settled_after();
   for (const SurfaceLoad& load : scene.surface_loads) latest = std::max(latest, load.ramp);
   for (const Body& body : scene.bodies) {
-    if (body.density_ramp) latest = std::max(latest, body.density_ramp->start + body.density_ramp->duration);
+    if (body.density_ramp) latest = std::max(latest, body.density_ramp->end());
   }
   for (const RigidBody& body : scene.rigid_bodies) latest = std::max(latest, body.start + body.ramp);
   return latest;

@@ -79,13 +79,20 @@ struct GeostaticStress {
 };
 using InitialStress = std::variant<UniformStress, GeostaticStress>;
 
+/// A stretch of a density ramp: linear in time.
+struct DensityStage {
+  double density;   ///< at its end [kg/m^3] of initial volume, > 0
+  double duration;  ///< [s], > 0
+};
+
 /// A density that changes while the scene goes on: mass is added to (or taken from) every particle of the
-/// body at its current velocity. Constant until `start`, linear in time over `duration`, constant from then
-/// on.
+/// body at its current velocity. Constant until `start`, then from stage to stage, constant after the last.
 struct DensityRamp {
-  double final_density;  ///< [kg/m^3] of initial volume, > 0
-  double start;          ///< [s], >= 0
-  double duration;       ///< [s], > 0
+  double start = 0.0;                ///< [s], >= 0
+  std::vector<DensityStage> stages;  ///< at least one
+
+  double end() const;             ///< of the last stage [s]
+  double lowest_density() const;  ///< at the end of any stage [kg/m^3]
 };
 
 /// What of a block belongs to a body: the particles whose centers lie between two radii; a disc has none
@@ -104,13 +111,17 @@ struct Body {
   std::array<int, max_dimension> particles_per_cell{1, 1};  ///< per axis, >= 1
   double density = 0.0;                                     ///< initial mass density [kg/m^3], > 0
   std::optional<DensityRamp> density_ramp;
+  /// Density that resists acceleration, in place of the one that has weight [kg/m^3 of initial volume], > 0: mass
+  /// scaling. At rest it makes no difference; it sets the speed of waves, and with it the stable time step.
+  std::optional<double> inertia;
   PerAxis velocity{};  ///< initial [m/s]
   std::optional<InitialStress> initial_stress;
   Material material = LinearElastic{0.0, 0.0};
   LockingControl locking_control =
       LockingControl::none;  ///< two dimensions, `LinearElastic` or `MohrCoulomb`
 
-  double density_at(double time) const;  ///< of initial volume, at `time` [s] [kg/m^3]
+  double density_at(double time) const;  ///< that has weight, of initial volume, at `time` [s] [kg/m^3]
+  double lightest() const;               ///< least density that resists acceleration at any time [kg/m^3]
 };
 
 /// A rigid box that moves as prescribed and acts through the grid: what it holds takes its velocity, in the

@@ -20,9 +20,7 @@ double fastest_wave(const Scene& scene) {
   };
   double speed = 0.0;
   for (const Body& body : scene.bodies) {
-    const double lightest =
-        body.density_ramp ? std::min(body.density, body.density_ramp->final_density) : body.density;
-    speed = std::max(speed, std::sqrt(modulus(body.material) / lightest));
+    speed = std::max(speed, std::sqrt(modulus(body.material) / body.lightest()));
   }
   return speed;
 }
@@ -294,7 +292,21 @@ class Simulation::EngineOf final : public Simulation::Engine {
   double weight() const {
     double squares = 0.0;
     for (std::size_t a = 0; a < Dim; ++a) squares += std::pow(scene().gravity.acceleration[a], 2);
-    return total_mass(stepper_.particles()) * scene().gravity.level * std::sqrt(squares);
+    return (total_mass(stepper_.particles()) + mass_without_inertia()) * scene().gravity.level * std::sqrt(squares);
+  }
+
+  /// What the bodies weigh more than what they resist acceleration with [kg per unit of the absent dimensions].
+  double mass_without_inertia() const {
+    const Particles<Dim, Real>& p = stepper_.particles();
+    double sum = 0.0;
+    for (std::size_t b = 0; b < scene().bodies.size(); ++b) {
+      const Body& body = scene().bodies[b];
+      if (!body.inertia) continue;
+      for (Eigen::Index slot = p.bodies[b].first; slot < p.bodies[b].last; ++slot) {
+        sum += static_cast<double>(p.mass[slot]) * (body.density_at(outcome().time) / *body.inertia - 1);
+      }
+    }
+    return sum;
   }
 
   TimeStepper<Dim, Real, scheme> stepper_;

@@ -48,7 +48,7 @@ class TimeStepper {
     if (has_fault_) return false;
     if (is_disordered_) arrange();
     loading_.set_masses(time, particles_);
-    loading_.set_forces(time, particles_);
+    loading_.set_forces(time, gravity, particles_);
     rigid_bodies_.hold(time);
     in_rows([&](Rows rows) { grid_.clear(rows); });
     if (order_ == UpdateOrder::usf) {

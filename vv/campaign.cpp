@@ -21,8 +21,10 @@
 #include <sstream>
 #include <thread>
 
+#include "vv/advice.hpp"
 #include "vv/gates.hpp"
 #include "vv/machine.hpp"
+#include "vv/progress.hpp"
 #include "vv/revision.hpp"
 
 namespace mpm::vv {
@@ -155,55 +157,6 @@ struct Job {
 
 using Jobs = std::vector<std::unique_ptr<Job>>;
 
-/// Tells on standard error how far the jobs are: a bar on a terminal, elsewhere a plain line now and then, of
-/// which short campaigns get none.
-class Progress {
- public:
-  explicit Progress(const std::vector<Job*>& jobs) : jobs_(jobs), on_terminal_(::isatty(STDERR_FILENO) == 1) {
-    for (const Job* job : jobs_) estimated_ += job->estimate;
-  }
-  ~Progress() {
-    if (on_terminal_) std::fputs("\r\033[K", stderr);
-  }
-  Progress(const Progress&) = delete;
-  Progress& operator=(const Progress&) = delete;
-
-  /// `finished` counts jobs that are done.
-  void draw(std::size_t finished, const std::vector<std::atomic<bool>>& done) {
-    const double elapsed = seconds_since(start_);
-    if (!on_terminal_ && elapsed < next_line_) return;
-    double updates = 0.0, progressed = 0.0;
-    for (std::size_t i = 0; i < jobs_.size(); ++i) {
-      const auto steps = static_cast<double>(jobs_[i]->particle_steps.load());
-      updates += steps;
-      progressed += done[i] ? jobs_[i]->estimate : std::min(steps, jobs_[i]->estimate);
-    }
-    const double fraction = progressed / estimated_;
-    const std::string left =
-        fraction > 0.02 ? fmt::format("  {:.0f} s left", elapsed * (1.0 - fraction) / fraction) : "";
-    const std::string state = fmt::format("{}/{} runs  {:.2g} particle-updates/s{}", finished, jobs_.size(),
-                                          updates / std::max(elapsed, 1e-3), left);
-    if (on_terminal_) {
-      constexpr int width = 30;
-      const int filled = static_cast<int>(fraction * width);
-      fmt::print(stderr, "\r\033[K[{:#<{}}{:.<{}}] {}", "", filled, "", width - filled, state);
-    } else {
-      fmt::print(stderr, "{:3.0f} %  {}\n", 100 * fraction, state);
-      next_line_ = elapsed + seconds_between_lines;
-    }
-    std::fflush(stderr);
-  }
-
- private:
-  static constexpr double seconds_between_lines = 30.0;
-
-  const std::vector<Job*>& jobs_;
-  bool on_terminal_;
-  double estimated_ = 0.0;
-  double next_line_ = seconds_between_lines;
-  Clock::time_point start_ = Clock::now();
-};
-
 /// A fixed number of threads that work through jobs, longest first.
 class Pool {
  public:
@@ -216,14 +169,14 @@ class Pool {
   /// Returns when every job is done or a stop was asked for. Throws what storing a record threw.
   void run() {
     if (jobs_.empty()) return;
-    Progress progress(jobs_);
+    Progress progress;
     {
       working_ = threads_;
       std::vector<std::jthread> threads;
       for (int i = 0; i < threads_; ++i) threads.emplace_back([this] { work(); });
       std::unique_lock lock(mutex_);
       while (!idle_.wait_for(lock, std::chrono::milliseconds(200), [&] { return working_ == 0; })) {
-        progress.draw(finished_, done_);
+        draw(progress);
       }
     }
     if (error_) std::rethrow_exception(error_);
@@ -231,6 +184,19 @@ class Pool {
 
  private:
   bool stopping() const { return stop_asked || broken_; }
+
+  void draw(Progress& progress) const {
+    double estimated = 0.0, updates = 0.0, progressed = 0.0;
+    for (std::size_t i = 0; i < jobs_.size(); ++i) {
+      const auto steps = static_cast<double>(jobs_[i]->particle_steps.load());
+      estimated += jobs_[i]->estimate;
+      updates += steps;
+      progressed += done_[i] ? jobs_[i]->estimate : std::min(steps, jobs_[i]->estimate);
+    }
+    progress.draw(progressed / estimated,
+                  fmt::format("{}/{} runs  {:.2g} particle-updates/s", finished_.load(), jobs_.size(),
+                              updates / std::max(progress.elapsed(), 1e-3)));
+  }
 
   void work() {
     for (std::size_t i = next_++; i < jobs_.size() && !stopping(); i = next_++) {
@@ -316,8 +282,12 @@ std::vector<Job*> unfinished(const Jobs& jobs, int pool_size) {
 
 class Campaign {
  public:
-  Campaign(const std::vector<Case>& cases, const CampaignOptions& options, const Execute& execute)
-      : cases_(cases), options_(options), execute_(execute) {
+  Campaign(const std::vector<Case>& cases, const CampaignOptions& options, const Execute& execute,
+           const TimeSteps& time_steps)
+      : cases_(cases),
+        options_(options),
+        execute_(execute),
+        timekeeper_{program_hash(), processor_name(), core_count(), time_steps} {
     if (options.threads < 1) throw std::invalid_argument("a campaign needs at least one thread");
     std::set<std::string> ids;
     for (const Case& definition : cases) {
@@ -334,10 +304,13 @@ class Campaign {
     execute(jobs_, {options_.threads});
     plan_repeats();
     execute(repeats_, {1, 2});
+    collect_records();
+    time_trades();
     return judged();
   }
 
   int reused() const { return reused_; }
+  double timing_seconds() const { return timing_seconds_; }
 
  private:
   bool left_out(const Case& definition) const { return options_.quick && !definition.quick; }
@@ -379,20 +352,52 @@ class Campaign {
                     jobs_.size() + repeats_planned_, (options_.out / "records").string()));
   }
 
-  std::vector<CaseVerdict> judged() {
+  void collect_records() {
     std::map<std::pair<const Case*, std::size_t>, const Job*> repeat_of;
     for (const auto& repeat : repeats_) repeat_of[{repeat->definition, repeat->run}] = repeat.get();
-    std::map<const Case*, std::vector<Record>> records;
     for (const auto& job : jobs_) {
       const auto repeat = repeat_of.find({job->definition, job->run});
       if (repeat != repeat_of.end()) job->record->repeat_digest = repeat->second->record->digest;
-      records[job->definition].push_back(std::move(*job->record));
+      records_[job->definition].push_back(std::move(*job->record));
     }
+  }
+
+  /// Nothing else runs meanwhile.
+  void time_trades() {
+    std::vector<std::pair<const Case*, CaseTiming>> timings;
+    std::size_t left = 0, done = 0;
+    for (const Case& definition : cases_) {
+      if (definition.trades.empty() || left_out(definition)) continue;
+      const auto file = timing_file(options_.out, definition);
+      timings.emplace_back(&definition, CaseTiming(definition, records_[&definition], file, timekeeper_));
+      left += timings.back().second.repeats_left();
+    }
+    Progress progress;
+    for (auto& [definition, timing] : timings) {
+      const bool finished = timing.run([&] {
+        ++done;
+        progress.draw(static_cast<double>(done) / static_cast<double>(left),
+                      fmt::format("{}/{} timed", done, left));
+        return !stop_asked;
+      });
+      if (!finished)
+        throw Interrupted(fmt::format(
+            "interrupted: all runs are stored, and the rounds of timing that were finished are in {}; "
+            "the same command continues there",
+            (options_.out / "timings").string()));
+      timings_[definition] = timing.timings();
+    }
+    if (left > 0) timing_seconds_ = progress.elapsed();
+  }
+
+  std::vector<CaseVerdict> judged() {
     std::vector<CaseVerdict> verdicts;
     for (const Case& definition : cases_) {
       verdicts.push_back(left_out(definition) ? not_run(definition, "not part of the quick selection")
-                                              : judge_case(definition, std::move(records[&definition])));
+                                              : judge_case(definition, std::move(records_[&definition]),
+                                                           judge, timings_[&definition]));
     }
+    judge_advice(verdicts);
     return verdicts;
   }
 
@@ -407,7 +412,11 @@ class Campaign {
   const std::vector<Case>& cases_;
   const CampaignOptions& options_;
   const Execute& execute_;
+  Timekeeper timekeeper_;
   Jobs jobs_, repeats_;
+  std::map<const Case*, std::vector<Record>> records_;
+  std::map<const Case*, Timings> timings_;
+  double timing_seconds_ = 0.0;
   std::size_t repeats_planned_ = 0;
   int reused_ = 0;
 };
@@ -429,7 +438,7 @@ double time_step_of(const Scene& scene) {
   for (const Body& body : scene.bodies) {
     const double modulus =
         std::visit([](const auto& material) { return material.youngs_modulus; }, body.material);
-    fastest = std::max(fastest, std::sqrt(modulus / body.density));
+    fastest = std::max(fastest, std::sqrt(modulus / body.lightest()));
   }
   return std::get<StableFraction>(scene.time_step).fraction * scene.cell_size / fastest;
 }
@@ -437,7 +446,7 @@ double time_step_of(const Scene& scene) {
 }  // namespace
 
 CampaignVerdict run_campaign(const std::vector<Case>& cases, const CampaignOptions& options,
-                             const Execute& execute) {
+                             const Execute& execute, const TimeSteps& time_steps) {
   const auto start = Clock::now();
   CampaignVerdict verdict;
   verdict.revision = build_facts().revision;
@@ -448,9 +457,10 @@ CampaignVerdict run_campaign(const std::vector<Case>& cases, const CampaignOptio
   verdict.date = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
   verdict.threads = options.threads;
   verdict.quick = options.quick;
-  Campaign campaign(cases, options, execute);
+  Campaign campaign(cases, options, execute, time_steps);
   verdict.cases = campaign.run();
   verdict.reused = campaign.reused();
+  verdict.timing_seconds = campaign.timing_seconds();
   verdict.wall_seconds = seconds_since(start);
   return verdict;
 }

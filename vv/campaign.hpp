@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "vv/record.hpp"
+#include "vv/timing.hpp"
 #include "vv/verdict.hpp"
 
 namespace mpm::vv {
@@ -29,15 +30,18 @@ class Interrupted : public std::runtime_error {
 /// Runs every run of every case and judges them.
 ///
 /// Each finished record is stored at once and used again by a later campaign with the same inputs and the
-/// same `program_hash`; a record file that cannot be read, or whose text was altered, is ignored and the run redone.
-/// A run that throws becomes a failed run, with the reason, and is not stored. Runs of cases with
+/// same `program_hash`; a record file that cannot be read, or whose text was altered, is ignored and the run
+/// redone. A run that throws becomes a failed run, with the reason, and is not stored. Runs of cases with
 /// `repeat_on_other_threads` are executed again in a pool of another size (two threads instead of one, else
 /// one).
 ///
+/// Once every run is recorded, those of cases with trades are timed, see `CaseTiming`, below out/timings.
+///
 /// Throws Interrupted; std::invalid_argument for fewer than one thread or two cases of one id;
-/// std::system_error when a record cannot be stored.
+/// std::system_error when a record or a timing cannot be stored.
 CampaignVerdict run_campaign(const std::vector<Case>& cases, const CampaignOptions& options,
-                             const Execute& execute = simulate);
+                             const Execute& execute = simulate,
+                             const TimeSteps& time_steps = time_first_steps);
 
 /// Where the record of one run is stored. The name tells the swept values and is unique within the case.
 std::filesystem::path record_file(const std::filesystem::path& out, const Case& definition, std::size_t run,

@@ -4,16 +4,20 @@
 #include <fstream>
 #include <iterator>
 
+#include "vv/advice.hpp"
 #include "vv/case_schema.hpp"
 #include "vv/curves.hpp"
 #include "vv/field_map.hpp"
+#include "vv/gates.hpp"
 #include "vv/json_reader.hpp"
 #include "vv/measurement_reader.hpp"
 #include "vv/metamorphic.hpp"
 #include "vv/norms.hpp"
 #include "vv/probe_reader.hpp"
 #include "vv/scene_reader.hpp"
+#include "vv/sufficient_model.hpp"
 #include "vv/sweep.hpp"
+#include "vv/trade_reader.hpp"
 
 namespace mpm::vv {
 namespace {
@@ -33,12 +37,14 @@ std::vector<std::string> metric_names(const Case& read) {
   std::vector<std::string> names = names_of(metric_catalogue());
   for (const Reading& reading : read.readings) names.push_back(metric_of(reading).name);
   for (const std::string& name : comparison_metric_names(read.measurements)) names.push_back(name);
+  for (const std::string& name : trade_metric_names(read.trades)) names.push_back(name);
   return names;
 }
 
 std::string read_metric(const JsonPlace& place, const Case& read) {
   const std::string name = place.one_of(metric_names(read));
-  if (name.starts_with(reading_prefix) || name.starts_with(measured_prefix)) return name;
+  for (const char* prefix : {reading_prefix, measured_prefix, trade_prefix})
+    if (name.starts_with(prefix)) return name;
   const Metric& metric = *std::find_if(metric_catalogue().begin(), metric_catalogue().end(),
                                        [&](const Metric& m) { return m.name == name; });
   if (!metric.reference.empty() && !contains(read.references, metric.reference)) {
@@ -176,6 +182,14 @@ Statistic read_statistic(const JsonPlace& place) {
                                   {"discretisation_uncertainty", Statistic::discretisation_uncertainty}});
 }
 
+/// A metric of the runs or, of a case that puts advice to the test, a number of the case as a whole.
+std::string read_gate_metric(const JsonPlace& place, const Case& read, const Gate& gate) {
+  if (!place.present() || !contains(names_of(advice_catalogue()), place.text())) return read_metric(place, read);
+  if (!read.advice) place.refuse("a metric that the case measures", ", which needs the key \"advice\"");
+  if (gate.statistic != Statistic::value) place.refuse("a metric of each run", ", which is one of the whole case");
+  return place.text();
+}
+
 /// What a gate looks at: pairs, a metric or, to compare whole curves, a curve and a stretch of it.
 void read_object(const JsonPlace& place, const Case& read, Gate& gate) {
   if (is_of_pairs(gate.statistic)) {
@@ -185,7 +199,7 @@ void read_object(const JsonPlace& place, const Case& read, Gate& gate) {
   }
   if (is_power_law(gate.statistic)) gate.over = read_metric(place["over"], read);
   if (gate.statistic != Statistic::curve_spread) {
-    gate.metric = read_metric(place["metric"], read);
+    gate.metric = read_gate_metric(place["metric"], read, gate);
     return;
   }
   gate.curve = read_curve_name(place["curve"], read);
@@ -219,6 +233,7 @@ Gate read_gate(const JsonPlace& place, const Case& read) {
   gate.id = place["id"].own_identifier(ids_of(read.gates));
   read_object(place, read, gate);
   gate.where = read_where(place["where"], read.sweep);
+  if (is_of_advice(gate) && !gate.where.empty()) place["where"].refuse("no runs of a gate on the whole case");
   read_across(place["across"], read, gate);
   read_threshold(place, gate);
   gate.basis = place["basis"].one_of({"theory", "requirement", "fit", "reference_uncertainty"});
@@ -495,14 +510,17 @@ void read_parts(Case& read) {
       "scene",   "element", "sweep", "references",      "readings",
       "gates",   "figures"};
   keys.insert(keys.end(), {"measurements", "pairs"});
-  if (!place["element"].present()) keys.insert(keys.end(), {"metamorphoses", "probes", "snapshots", "cuts"});
+  if (!place["element"].present()) {
+    keys.insert(keys.end(), {"metamorphoses", "probes", "snapshots", "cuts"});
+    keys.insert(keys.end(), {"trades", "trade_without", "advice"});
+  }
   place.allow_only(keys);
   optional_text(place["$schema"]);
   read_description(place, read);
   const Subject subject = read_subject(place);
   read_checked(subject);  // as written, before anything is swept
   read.sweep = read_sweep(place["sweep"], subject);
-  read.runs = expand(subject, read.sweep);
+  read.runs = expand(subject, read.sweep, place["trade_without"]);
   require_suited(place["references"], read);
   read.metamorphoses = read_metamorphoses(place["metamorphoses"], read);
   read.probes = read_probes(place["probes"], read.runs);
@@ -514,6 +532,9 @@ void read_parts(Case& read) {
     for (const JsonPlace& reading : readings.elements()) read.readings.push_back(read_reading(reading, read));
   }
   read.pairs = read_pairs(place["pairs"], read, metric_names(read));
+  read.trades =
+      read_trades(place["trades"], read, [&](const JsonPlace& metric) { return read_metric(metric, read); });
+  read.advice = read_advice(place["advice"]);
   for (const JsonPlace& gate : place["gates"].some_elements()) read.gates.push_back(read_gate(gate, read));
   if (const JsonPlace claims = place["claims"]; claims.present()) {
     for (const JsonPlace& claim : claims.elements()) read.claims.push_back(read_claim(claim, read));
@@ -521,6 +542,8 @@ void read_parts(Case& read) {
   if (const JsonPlace figures = place["figures"]; figures.present()) {
     for (const JsonPlace& figure : figures.elements()) read.figures.push_back(read_figure(figure, read));
   }
+  // Last, since it depends on all that the case asks for, and what it asks for is checked against the scene as written.
+  for (RunRequest& run : read.runs) choose_model(read, run);
 }
 
 /// The second, independent net: what the published schema refuses is refused, whatever the reader above

@@ -11,6 +11,7 @@
 #include "solver/scene.hpp"
 #include "vv/curve_file.hpp"
 #include "vv/element_test.hpp"
+#include "vv/model_choice.hpp"
 
 namespace mpm::reference {
 class ManufacturedSolution;
@@ -187,13 +188,16 @@ struct PairedPrediction {
 };
 
 /// Runs as configurations of a problem, weighed by error and cost. The error is a metric or, with `curve`, the
-/// distance of a curve from that of the finest runs.
+/// distance of a curve from that of the finest runs or of a baseline.
 struct TradeRequest {
   std::string title;                  ///< what the error is of, for a person: "stress of the column"
   std::vector<std::string> problems;  ///< axes of the sweep whose values are other problems, not other configurations
   std::string metric;                 ///< name of the error; empty with a curve
   std::string curve;                  ///< name of a curve of the runs; empty with a metric
   std::vector<std::vector<Selector>> finest;  ///< of a curve: the runs of each family that stand for the truth, two at least
+  /// Of a curve, instead of the finest: the run of each problem that the others are compared with as it is, so that the
+  /// error is what they change.
+  std::vector<Selector> baseline;
   double from = 0.0, up_to = 0.0;     ///< of a curve: the stretch of abscissae
   double within = 0.0;                ///< of a curve: half-width of the mean that it is read with; 0 for none
   std::string family;                 ///< axis whose values have colours of their own; may be empty
@@ -243,10 +247,13 @@ struct RunRequest {
   Json scene_text;  ///< the case's /scene or /element, the parameters put in
   /// What each axis of the sweep changes in this run, in sweep order: {"set": {pointer: value}, "remove": [pointer]}.
   std::vector<Json> changes = {};
-  Scene scene;      ///< checked; without bodies for an element test
+  Scene scene;      ///< checked, and what is simulated: see `model`; without bodies for an element test
   std::shared_ptr<const reference::ManufacturedSolution> motion = nullptr;  ///< what drives the scene; may be null
   std::optional<ElementTest> element = std::nullopt;  ///< checked; stands in place of the scene
   int threads = 1;                                    ///< share the work of each step; they change no bit
+  ModelRequest model_request = {};
+  std::vector<ModelChoice> model = {};         ///< how `scene` came from what is written, and why
+  std::optional<double> width = std::nullopt;  ///< of a strip of which `scene` is the column [m]
 };
 
 /// One case file, checked: every run it asks for can start.

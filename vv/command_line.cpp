@@ -9,6 +9,7 @@
 #include <cmath>
 #include <optional>
 
+#include "vv/advise_command.hpp"
 #include "vv/campaign.hpp"
 #include "vv/digitise_command.hpp"
 #include "vv/machine.hpp"
@@ -197,6 +198,8 @@ void print_counts(const CampaignVerdict& verdict, const fs::path& out) {
   fmt::print("runs      {} in {:.1f} s on {} thread{}, {} stored record{} reused\n", counts.runs,
              verdict.wall_seconds, verdict.threads, verdict.threads == 1 ? "" : "s", verdict.reused,
              verdict.reused == 1 ? "" : "s");
+  if (verdict.timing_seconds > 0.0)
+    fmt::print("timing    {:.1f} s of these, one run at a time\n", verdict.timing_seconds);
   fmt::print("results   {}\n", out.string());
   std::fflush(stdout);
 }
@@ -327,6 +330,7 @@ struct CommandLine {
   CLI::App* run = app.add_subcommand("run", "Run cases and judge them");
   CLI::App* report = app.add_subcommand("report", "Run and judge every shipped case and write the report");
   DigitiseCommand digitise{app};
+  AdviseCommand advise{app};
   CLI::App* check_performance =
       app.add_subcommand("check-performance",
                          "Read a file of measurements; exit code 0 if it is of this revision and machine, "
@@ -366,6 +370,7 @@ struct CommandLine {
     if (run->parsed()) return vv::run(arguments, reports);
     if (report->parsed()) return vv::report(arguments, reports);
     if (digitise.parsed()) return digitise.run(), all_good;
+    if (advise.parsed()) return advise.run(file_of) ? all_good : gate_failed;
     if (check_performance->parsed()) return vv::check_performance(arguments, reports);
     return of_the_front_door(test->parsed() ? "test" : "bench");
   }

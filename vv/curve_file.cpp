@@ -188,7 +188,7 @@ CurveFile read_parts(const JsonPlace& place) {
   curve.title = place["title"].text();
   curve.missing = place["status"].one_of({"present", "missing"}) == "missing";
   read_source(place["source"], curve);
-  curve.origin = place["origin"].one_of({"digitised", "table", "formula"});
+  curve.origin = place["origin"].one_of({"digitised", "table", "formula", "simulated"});
   for (const JsonPlace& column : place["columns"].some_elements())
     curve.columns.push_back(read_column(column, curve.columns));
   if (curve.columns.size() < 2) place["columns"].refuse("at least two columns");

@@ -41,7 +41,7 @@ struct CurveFile {
   bool missing = false;              ///< a slot: what is to be measured is known, the numbers are not
   std::string citation, doi, place;  ///< key in reference/bibliography.md; DOI or empty; "Figure 3"
   std::string by_way_of;  ///< whose digitisation or compilation the numbers come from; may be empty
-  std::string origin;     ///< digitised, table or formula
+  std::string origin;     ///< digitised, table, formula or simulated
   std::vector<CurveColumn> columns;
   std::optional<std::size_t> abscissa;  ///< column the rows ascend in; none of a table of single measurements
   std::vector<std::string> row_names;   ///< one a row, or none

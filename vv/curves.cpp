@@ -146,17 +146,12 @@ std::size_t shortest_of(const Coverage& coverage) {
   return missing_last >= missing_first ? coverage.first_to_end : coverage.last_to_begin;
 }
 
-double at_step(const Range& range, std::size_t step, std::size_t steps) {
-  return std::lerp(range.begin, range.end, static_cast<double>(step) / static_cast<double>(steps - 1));
-}
-
 ReadOff spread_over(const std::vector<const Curve*>& curves, const Range& range, double within) {
-  constexpr std::size_t steps = 200;
   double largest_difference = 0.0, largest_mean = 0.0;
-  for (std::size_t step = 0; step < steps; ++step) {
+  for (const double abscissa : abscissae_over(range.begin, range.end)) {
     std::vector<double> values;
     for (const Curve* curve : curves) {
-      ReadOff value = value_at(*curve, at_step(range, step, steps), within);
+      ReadOff value = value_at(*curve, abscissa, within);
       if (!value.lack.empty()) return {.lack = value.lack, .of = values.size()};
       values.push_back(value.value);
     }
@@ -214,6 +209,25 @@ ReadOff value_at(const Curve& curve, double abscissa, double within) {
   if (values.size() >= 2) return found(mean_of(values));
   return {.lack = fmt::format("the curve {} has fewer than two samples within {:.6g}{} of {:.6g}{}",
                               curve.name, within, unit_after(curve), abscissa, unit_after(curve))};
+}
+
+std::vector<double> abscissae_over(double from, double up_to) {
+  constexpr std::size_t steps = 200;
+  std::vector<double> abscissae;
+  for (std::size_t step = 0; step < steps; ++step)
+    abscissae.push_back(std::lerp(from, up_to, static_cast<double>(step) / static_cast<double>(steps - 1)));
+  return abscissae;
+}
+
+CurveReading read_over(const Curve& curve, const std::vector<double>& abscissae, double within) {
+  CurveReading reading;
+  for (const double abscissa : abscissae) {
+    const ReadOff value = value_at(curve, abscissa, within);
+    reading.lack = value.lack;
+    if (!reading.lack.empty()) break;
+    reading.y.push_back(value.value);
+  }
+  return reading;
 }
 
 ReadOff read_off(const Reading& reading, const std::vector<Curve>& curves) {

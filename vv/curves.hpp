@@ -34,6 +34,16 @@ const Curve* find_curve(const std::vector<Curve>& curves, const std::string& nam
 /// two. Never extrapolated: there is no value where the curve does not reach the abscissa.
 ReadOff value_at(const Curve& curve, double abscissa, double within);
 
+/// 200 abscissae equally far apart from end to end.
+std::vector<double> abscissae_over(double from, double up_to);
+
+/// A curve read by `value_at` at many abscissae or, with a `lack` for a person, as far as that went.
+struct CurveReading {
+  std::vector<double> y;
+  std::string lack;
+};
+CurveReading read_over(const Curve& curve, const std::vector<double>& abscissae, double within);
+
 /// What a reading says of a run with these curves. Over a reference solution its curve is taken at the very
 /// abscissae at which the run's is.
 ReadOff read_off(const Reading& reading, const std::vector<Curve>& curves);

@@ -22,14 +22,6 @@ namespace {
 constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
 constexpr const char* completion_metric = "completed";
 
-/// The value a gate compares or, when it is NaN, why there is none.
-struct Measured {
-  double value = not_measured;
-  std::string detail;
-  bool ended_early = false;  ///< there is none because the solver ended the run early and said how
-  bool waits = false;        ///< there is none because the measurement it compares with is missing
-};
-
 // ---- measuring ----
 
 /// Why the run was not compared with the measurement that a metric belongs to; empty if it was.
@@ -353,10 +345,17 @@ RunVerdict judged_run(const Case& definition, const RunRequest& request, Record 
 
 // ---- gates ----
 
+CaseStatus status_of(const CaseVerdict& verdict) {
+  const auto results = gate_results(verdict);
+  const bool good =
+      std::all_of(results.begin(), results.end(), [](const GateResult* r) { return r->good(); });
+  return good ? CaseStatus::pass : CaseStatus::fail;
+}
+
 /// One case while its gates are applied.
 class Bench {
  public:
-  Bench(const Case& definition, std::vector<Record> records, const Judge& judge_run) {
+  Bench(const Case& definition, std::vector<Record> records, const Judge& judge_run, const Timings& timings) {
     verdict_.definition = definition;
     for (std::size_t run = 0; run < records.size(); ++run) {
       verdict_.runs.push_back(
@@ -365,11 +364,14 @@ class Bench {
     covered_.resize(records.size(), false);
     compare_with_measurements(verdict_);
     verdict_.pairs = judge_pairs(verdict_);
+    verdict_.trades = judge_trades(definition, verdict_.runs, timings);
+    keep_trade_metrics(definition, verdict_.trades, verdict_.runs);
     build_series();
   }
 
   CaseVerdict verdict() && {
     for (const Gate& gate : definition().gates) {
+      if (is_of_advice(gate)) continue;
       const bool applied = !gate.pairs.empty()                  ? apply_to_pairs(gate)
                            : gate.statistic == Statistic::value ? apply_to_runs(gate)
                                                                 : apply_to_series(gate);
@@ -378,10 +380,7 @@ class Bench {
     require_completion();
     if (verdict_.runs.empty()) refuse(judged_at_all(), "the case has no runs");
     if (definition().gates.empty()) refuse(judged_at_all(), "the case has no gates");
-    const auto results = gate_results(verdict_);
-    const bool good =
-        std::all_of(results.begin(), results.end(), [](const GateResult* r) { return r->good(); });
-    verdict_.status = good ? CaseStatus::pass : CaseStatus::fail;
+    verdict_.status = status_of(verdict_);
     return std::move(verdict_);
   }
 
@@ -542,12 +541,24 @@ class Bench {
 
 }  // namespace
 
-CaseVerdict judge_case(const Case& definition, std::vector<Record> records, const Judge& judge_run) {
+CaseVerdict judge_case(const Case& definition, std::vector<Record> records, const Judge& judge_run,
+                       const Timings& timings) {
   if (records.size() != definition.runs.size()) {
     throw std::invalid_argument(fmt::format("case {} has {} runs and {} records", definition.id,
                                             definition.runs.size(), records.size()));
   }
-  return Bench(definition, std::move(records), judge_run).verdict();
+  if (!timings.empty() && timings.size() != definition.runs.size()) {
+    throw std::invalid_argument(fmt::format("case {} has {} runs and {} timings", definition.id,
+                                            definition.runs.size(), timings.size()));
+  }
+  return Bench(definition, std::move(records), judge_run, timings).verdict();
+}
+
+bool is_of_advice(const Gate& gate) { return gate.metric.starts_with("advice."); }
+
+void add_result(CaseVerdict& verdict, const Gate& gate, const Measured& measured) {
+  verdict.gates.push_back(result_of(gate, "the case", measured));
+  verdict.status = status_of(verdict);
 }
 
 }  // namespace mpm::vv

@@ -112,10 +112,13 @@ Body changed(const Change& change, Body body, int dimension) {
   body.particles_per_cell = change.by_axis(body.particles_per_cell);
   body.density *= change.density();
   if (body.density_ramp) {
-    body.density_ramp->final_density *= change.density();
     body.density_ramp->start *= change.time;
-    body.density_ramp->duration *= change.time;
+    for (DensityStage& stage : body.density_ramp->stages) {
+      stage.density *= change.density();
+      stage.duration *= change.time;
+    }
   }
+  if (body.inertia) *body.inertia *= change.density();
   body.velocity = change.velocity_of(body.velocity);
   if (body.initial_stress) body.initial_stress = changed(change, *body.initial_stress, dimension);
   body.material = changed(change, body.material);

@@ -5,6 +5,7 @@
 
 #include "vv/judging.hpp"
 #include "vv/metamorphic.hpp"
+#include "vv/step_cost.hpp"
 
 namespace mpm::vv {
 namespace {
@@ -61,6 +62,9 @@ std::vector<Metric> general_metrics() {
   all.push_back({"completed", "-", "", "1 if the run ended where it was meant to, else 0"});
   all.push_back({"steps", "-", "", "time steps done"});
   all.push_back({"particle_steps", "-", "", "time steps times particles: the noise-free cost"});
+  all.push_back(
+      {"counted_bytes", "-", "", "bytes that the steps move between memory and processor, counted"});
+  all.push_back({"counted_operations", "-", "", "floating-point operations of the steps, counted"});
   return all;
 }
 
@@ -68,7 +72,10 @@ std::vector<Metric> general_metrics() {
 void judge_scene(Judging& judging) {
   const Record& record = judging.record;
   judging.set("cell_crossings", static_cast<double>(record.cell_crossings));
-  judging.set("particle_steps", static_cast<double>(record.cost.particle_steps));
+  const CountedWork work = counted_work(judging.scene(), record.cost.particle_steps);
+  judging.set("particle_steps", work.particle_steps);
+  judging.set("counted_bytes", work.bytes);
+  judging.set("counted_operations", work.operations);
   if (record.failure.empty()) judging.set("mass_change", std::abs(record.relative_mass_change));
   for (const History& history : record.histories) {
     judging.result.curves.push_back({history.id, "run", history.time, history.value, "time"});

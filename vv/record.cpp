@@ -19,7 +19,9 @@
 #include <system_error>
 
 #include "vv/metamorphic.hpp"
+#include "vv/precision_pilots.hpp"
 #include "vv/sampler.hpp"
+#include "vv/sufficient_model.hpp"
 
 namespace mpm::vv {
 namespace {
@@ -150,6 +152,18 @@ std::map<std::string, double> measured_from_json(const Json& json) {
   std::map<std::string, double> measured;
   for (const auto& [name, value] : json.items()) measured[name] = number_from(value);
   return measured;
+}
+
+std::vector<ModelChoice> model_from_json(const Json& json) {
+  std::vector<ModelChoice> model;
+  for (const Json& entry : json) {
+    model.push_back({.what = entry.at("what").get<std::string>(),
+                     .written = entry.at("written").get<std::string>(),
+                     .used = entry.at("used").get<std::string>(),
+                     .reason = entry.at("reason").get<std::string>(),
+                     .numbers = measured_from_json(entry.at("numbers"))});
+  }
+  return model;
 }
 
 Json outcome_to_json(const Outcome& outcome) {
@@ -312,7 +326,10 @@ class Recorder {
         start_(simulation_.particles()),
         pending_(definition.snapshots) {
     const Observation now(simulation_);
-    for (const HistoryProbe& probe : definition.probes) samplers_.emplace_back(probe, scene_, now);
+    for (const HistoryProbe& probe : definition.probes) {
+      const SimulatedProbe seen = simulated(probe, request);
+      samplers_.emplace_back(seen.probe, scene_, now, seen.factor);
+    }
     for (Sampler& sampler : samplers_) sampler.sample(now, simulation_.time_step());
     take_snapshots(now);
   }
@@ -342,6 +359,10 @@ class Recorder {
       going_on = simulation_.advance();
     }
     wall_ += Clock::now() - began;
+    if (early_wall_ < early) {
+      early_wall_ = wall_;
+      early_steps_ = simulation_.steps();
+    }
     return going_on;
   }
 
@@ -429,14 +450,16 @@ class Recorder {
     record.cost = {.wall_seconds = std::chrono::duration<double>(wall_).count(),
                    .steps = simulation_.steps(),
                    .particle_steps = simulation_.steps() * simulation_.particle_count(),
-                   .memory_bytes = simulation_.memory()};
+                   .memory_bytes = simulation_.memory(),
+                   .early_seconds = std::chrono::duration<double>(early_wall_).count(),
+                   .early_steps = early_steps_};
     return record;
   }
 
-  /// The factor by which a ramp has changed a body's density. The particles carry the density of the last
+  /// The factor by which a ramp has changed a body's mass. The particles carry the density of the last
   /// step's beginning.
   double growth_of(const Body& body) const {
-    if (!body.density_ramp || simulation_.steps() == 0) return 1.0;
+    if (!body.density_ramp || body.inertia || simulation_.steps() == 0) return 1.0;
     const double time = static_cast<double>(simulation_.steps() - 1) * simulation_.time_step();
     return body.density_at(time) / body.density;
   }
@@ -496,7 +519,11 @@ class Recorder {
   std::vector<Sampler> samplers_;
   std::vector<SnapshotRequest> pending_;
   std::vector<Snapshot> snapshots_;
-  Clock::duration wall_{};
+  /// After which steps are no longer early; see `Cost`.
+  static constexpr auto early = std::chrono::milliseconds(150);
+
+  Clock::duration wall_{}, early_wall_{};
+  std::int64_t early_steps_ = 0;
   std::int64_t reported_steps_ = 0;
 };
 
@@ -532,7 +559,11 @@ Record record_element_test(const ElementTest& test, const Pulse& pulse) {
   record.digest = digest_of(run);
   record.paths = std::move(run.curves);
   record.measured = std::move(run.measured);
-  record.cost = {.wall_seconds = wall.count(), .steps = steps, .particle_steps = steps};
+  record.cost = {.wall_seconds = wall.count(),
+                 .steps = steps,
+                 .particle_steps = steps,
+                 .early_seconds = wall.count(),
+                 .early_steps = steps};
   return record;
 }
 
@@ -591,9 +622,20 @@ double difference_to(const Scene& scene, const std::string& metamorphosis, const
   return largest_difference(end, mapped_back(scene, other.particles(), other.time(), metamorphosis));
 }
 
-Record record_scene(const Case& definition, const RunRequest& request, const Pulse& pulse) {
+/// The request once pilots, if it asks for any, have told its precision.
+RunRequest with_precision(RunRequest request, const Pulse& pulse) {
+  if (request.model_request.precision == Decision::as_written) return request;
+  request.model.push_back(choose_precision(request, pulse));
+  request.scene.precision =
+      request.model.back().used == "float" ? Precision::float32 : Precision::float64;
+  return request;
+}
+
+Record record_scene(const Case& definition, const RunRequest& asked, const Pulse& pulse) {
+  const RunRequest request = with_precision(asked, pulse);
   Recorder recorder(definition, request, pulse);
   Record record = recorder.run();
+  record.model = request.model;
   for (const std::string& metamorphosis : definition.metamorphoses) {
     if (!record.completed()) break;  // a state without an end has no other description of it
     const double difference = difference_to(request.scene, metamorphosis, recorder.particles(), pulse);
@@ -626,6 +668,18 @@ std::string ending_of(const Record& record) {
   return text;
 }
 
+Json model_to_json(const std::vector<ModelChoice>& model) {
+  Json json = Json::array();
+  for (const ModelChoice& choice : model) {
+    json.push_back({{"what", choice.what},
+                    {"written", choice.written},
+                    {"used", choice.used},
+                    {"reason", choice.reason},
+                    {"numbers", measured_to_json(choice.numbers)}});
+  }
+  return json;
+}
+
 Json to_json(const Record& record) {
   return {{"schema", record_schema},
           {"case_id", record.case_id},
@@ -649,10 +703,13 @@ Json to_json(const Record& record) {
            {{"wall_seconds", number(record.cost.wall_seconds)},
             {"steps", record.cost.steps},
             {"particle_steps", record.cost.particle_steps},
-            {"memory_bytes", record.cost.memory_bytes}}},
+            {"memory_bytes", record.cost.memory_bytes},
+            {"early_seconds", number(record.cost.early_seconds)},
+            {"early_steps", record.cost.early_steps}}},
           {"profile", profile_to_json(record.profile)},
           {"histories", histories_to_json(record.histories)},
           {"snapshots", snapshots_to_json(record.snapshots)},
+          {"model", model_to_json(record.model)},
           {"paths", paths_to_json(record.paths)},
           {"measured", measured_to_json(record.measured)}};
 }
@@ -681,10 +738,13 @@ Record record_from_json(const Json& json) {
   record.cost = {.wall_seconds = number_from(cost.at("wall_seconds")),
                  .steps = cost.at("steps").get<std::int64_t>(),
                  .particle_steps = cost.at("particle_steps").get<std::int64_t>(),
-                 .memory_bytes = cost.at("memory_bytes").get<std::int64_t>()};
+                 .memory_bytes = cost.at("memory_bytes").get<std::int64_t>(),
+                 .early_seconds = number_from(cost.at("early_seconds")),
+                 .early_steps = cost.at("early_steps").get<std::int64_t>()};
   record.profile = profile_from_json(json.at("profile"));
   record.histories = histories_from_json(json.at("histories"));
   record.snapshots = snapshots_from_json(json.at("snapshots"));
+  record.model = model_from_json(json.at("model"));
   record.paths = paths_from_json(json.at("paths"));
   record.measured = measured_from_json(json.at("measured"));
   return record;
@@ -704,6 +764,8 @@ std::string input_hash(const Case& definition, const RunRequest& request) {
                 {"probes", Json::array()}};
   for (const HistoryProbe& probe : definition.probes)
     input["probes"].push_back(essence_of(probe, request.scene));
+  // The text alone does not tell: what is chosen depends on what else the case asks for.
+  if (request.width) input["dimension"] = request.scene.dimension;
   for (const SnapshotRequest& snapshot : definition.snapshots) {
     input["snapshots"].push_back({{"when", static_cast<int>(snapshot.when)},
                                   {"time", snapshot.time},

@@ -50,6 +50,8 @@ struct Cost {
   std::int64_t steps = 0;
   std::int64_t particle_steps = 0;
   std::int64_t memory_bytes = 0;  ///< of the solver's particles and nodes; 0 of an element test, which has neither
+  double early_seconds = 0.0;    ///< when the steps had taken 0.15 s of wall time, or were over: how long ...
+  std::int64_t early_steps = 0;  ///< ... and how many they were
 };
 
 /// What a run did: everything judged later is computed from this, never from the simulation itself.
@@ -77,6 +79,7 @@ struct Record {
       measured;  ///< metrics that the record's states alone cannot tell, by name; of other descriptions of a
                  ///< scene, and of an element test what only the law itself knows
   std::vector<Snapshot> snapshots;  ///< in the order they were taken
+  std::vector<ModelChoice> model;   ///< what was simulated instead of what was written, and what was left as it is
   std::vector<ElementCurve> paths;  ///< of an element test, over the imposed strain
   Cost cost;
 
@@ -89,6 +92,9 @@ std::string ending_of(const Record& record);
 
 /// Every number comes back with the same bits; NaN and infinities travel as "nan", "inf" and "-inf".
 Json to_json(const Record& record);
+
+/// What was chosen of a run's model, with all its numbers.
+Json model_to_json(const std::vector<ModelChoice>& model);
 
 /// The inverse of `to_json`. Throws std::exception for anything that is not a whole record.
 Record record_from_json(const Json& json);

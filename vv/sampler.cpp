@@ -72,6 +72,11 @@ double sum_over_body(const ParticleFields& fields, std::size_t body,
   return sum;
 }
 
+/// The mass that has weight over the one that resists acceleration.
+double weight_over_inertia(const Body& body, double time) {
+  return body.inertia ? body.density_at(time) / *body.inertia : 1.0;
+}
+
 double mass_of_body(const ParticleFields& fields, std::size_t body) {
   return sum_over_body(fields, body, [&](std::size_t p) { return fields.mass[p]; });
 }
@@ -186,9 +191,11 @@ Measure measure_of_rigid_body(const HistoryProbe& probe, std::size_t component, 
 Measure measure_of_body(const HistoryProbe& probe, std::size_t component, const Scene& scene) {
   const std::size_t body = index_of(scene.bodies, probe);
   if (probe.quantity == "weight" || probe.quantity == "load") {
-    return [body, &gravity = scene.gravity, axis = axes_of(scene) - 1](const Observation& now) {
+    return [body, &scene, axis = axes_of(scene) - 1](const Observation& now) {
+      const Gravity& gravity = scene.gravity;
       const double acceleration = gravity.acceleration[axis] * gravity.level * gravity.fraction(now.time());
-      return mass_of_body(now.particles(), body) * std::abs(acceleration);
+      return mass_of_body(now.particles(), body) * weight_over_inertia(scene.bodies[body], now.time()) *
+             std::abs(acceleration);
     };
   }
   if (probe.quantity != "displacement" && probe.quantity != "velocity") refuse(probe);
@@ -260,7 +267,7 @@ double potential_energy(const Scene& scene, const ParticleFields& fields) {
   double sum = 0.0;
   for (std::size_t p = 0; p < fields.mass.size(); ++p) {
     for (std::size_t axis = 0; axis < dimension; ++axis) {
-      sum -= fields.mass[p] * scene.gravity.acceleration[axis] * scene.gravity.level *
+      sum -= fields.mass[p] * weight_over_inertia(scene.bodies[fields.body[p]], 0.0) * scene.gravity.acceleration[axis] * scene.gravity.level *
              fields.displacement[p * dimension + axis];
     }
   }
@@ -272,9 +279,10 @@ double stress_work(const ParticleFields& fields) {
   return std::accumulate(fields.stress_work.begin(), fields.stress_work.end(), 0.0);
 }
 
-Sampler::Sampler(const HistoryProbe& probe, const Scene& scene, const Observation& start)
+Sampler::Sampler(const HistoryProbe& probe, const Scene& scene, const Observation& start, double factor)
     : history_{.id = probe.id, .quantity = probe.quantity, .time = {}, .value = {}},
       every_(probe.every),
+      factor_(factor),
       measure_(measure_of(probe, scene, start)) {
   if (!(every_ > 0.0))
     throw std::invalid_argument("the sampling interval of a history probe must be positive");
@@ -282,7 +290,7 @@ Sampler::Sampler(const HistoryProbe& probe, const Scene& scene, const Observatio
 
 void Sampler::sample(const Observation& now, double time_step) {
   if (!history_.time.empty() && history_.time.back() == now.time()) return;
-  history_.value.push_back(measure_(now));
+  history_.value.push_back(factor_ * measure_(now));
   history_.time.push_back(now.time());
   next_ = every_ * (std::floor((now.time() + 0.5 * time_step) / every_) + 1.0);
 }

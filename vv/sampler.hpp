@@ -43,8 +43,9 @@ double stress_work(const ParticleFields& fields);
 /// A probe at work: what it looks at, when it is due, and what it has seen.
 class Sampler {
  public:
-  /// `scene` must outlive the sampler. Throws std::invalid_argument for a probe the scene cannot serve.
-  Sampler(const HistoryProbe& probe, const Scene& scene, const Observation& start);
+  /// `scene` must outlive the sampler. What it sees is recorded times `factor`. Throws std::invalid_argument for
+  /// a probe the scene cannot serve.
+  Sampler(const HistoryProbe& probe, const Scene& scene, const Observation& start, double factor = 1.0);
 
   /// The step that ends at `time` is the nearest to the next multiple of the interval, or past it. Never
   /// twice at one time, however the rounding falls.
@@ -60,7 +61,7 @@ class Sampler {
 
  private:
   History history_;
-  double every_;
+  double every_, factor_;
   std::function<double(const Observation&)> measure_;  ///< the number recorded at a moment
   double next_ = 0.0;
 };

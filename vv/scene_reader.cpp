@@ -100,10 +100,18 @@ Ring read_ring(const JsonPlace& place, std::size_t axes) {
 }
 
 DensityRamp read_density_ramp(const JsonPlace& place) {
-  place.allow_only({"final_density", "start", "duration"});
-  return {.final_density = place["final_density"].quantity(QuantityKind::density),
-          .start = place["start"].quantity_or(QuantityKind::time, 0.0),
-          .duration = place["duration"].quantity(QuantityKind::time)};
+  place.allow_only({"final_density", "start", "duration", "then"});
+  DensityRamp ramp{.start = place["start"].quantity_or(QuantityKind::time, 0.0),
+                   .stages = {{.density = place["final_density"].quantity(QuantityKind::density),
+                               .duration = place["duration"].quantity(QuantityKind::time)}}};
+  if (const JsonPlace then = place["then"]; then.present()) {
+    for (const JsonPlace& stage : then.some_elements()) {
+      stage.allow_only({"density", "duration"});
+      ramp.stages.push_back({.density = stage["density"].quantity(QuantityKind::density),
+                             .duration = stage["duration"].quantity(QuantityKind::time)});
+    }
+  }
+  return ramp;
 }
 
 enum class InitialStressType { uniform, geostatic };
@@ -125,7 +133,7 @@ InitialStress read_initial_stress(const JsonPlace& place, std::size_t axes) {
 
 Body read_body(const JsonPlace& place, std::size_t axes) {
   place.allow_only(keys_of(axes,
-                           {"name", "lower", "upper", "particles_per_cell", "density", "density_ramp",
+                           {"name", "lower", "upper", "particles_per_cell", "density", "density_ramp", "inertia",
                             "velocity", "initial_stress", "material", "locking_control"},
                            {"ring"}));
   Body body;
@@ -141,6 +149,8 @@ Body read_body(const JsonPlace& place, std::size_t axes) {
   if (const JsonPlace ring = place["ring"]; ring.present()) body.ring = read_ring(ring, axes);
   if (const JsonPlace ramp = place["density_ramp"]; ramp.present())
     body.density_ramp = read_density_ramp(ramp);
+  if (const JsonPlace inertia = place["inertia"]; inertia.present())
+    body.inertia = inertia.quantity(QuantityKind::density);
   if (const JsonPlace stress = place["initial_stress"]; stress.present()) {
     body.initial_stress = read_initial_stress(stress, axes);
   }
@@ -271,11 +281,26 @@ Precision read_precision(const JsonPlace& place) {
   return place.choice<Precision>({{"double", Precision::float64}, {"float", Precision::float32}});
 }
 
+Decision read_decision(const JsonPlace& place) {
+  return place.choice<Decision>({{"automatic", Decision::automatic}, {"as_written", Decision::as_written}});
+}
+
+ModelRequest read_model(const JsonPlace& place) {
+  ModelRequest request;
+  if (!place.present()) return request;
+  place.allow_only({"dimension", "precision"});
+  if (const JsonPlace dimension = place["dimension"]; dimension.present())
+    request.dimension = read_decision(dimension);
+  if (const JsonPlace precision = place["precision"]; precision.present())
+    request.precision = read_decision(precision);
+  return request;
+}
+
 /// The scene as written: types, keys and units are right, but the values may be impossible.
 Scene read_scene(const JsonPlace& place) {
   place.allow_only({"dimension", "scheme", "update_order", "precision", "objectivity", "flip_fraction",
                     "damping", "grid", "bodies", "rigid_bodies", "surface_loads", "driven_motion",
-                    "sums_strain", "sums_work", "domain_limit", "gravity", "time_step", "termination"});
+                    "model", "sums_strain", "sums_work", "domain_limit", "gravity", "time_step", "termination"});
   Scene scene;
   scene.dimension = read_dimension(place["dimension"]);
   scene.scheme = place["scheme"].choice<Scheme>(
@@ -547,6 +572,7 @@ CheckedSubject read_checked(const Subject& subject) {
     return checked;
   }
   checked.scene = read_scene(place);
+  checked.model = read_model(place["model"]);
   require_possible(checked.scene, subject.pointer);
   checked.motion = read_solution(place, checked.scene);
   checked.scene.driven_motion = driven_motion_of(checked.motion);

@@ -9,6 +9,7 @@
 #include "solver/scene.hpp"
 #include "vv/element_test.hpp"
 #include "vv/json_reader.hpp"
+#include "vv/model_choice.hpp"
 
 namespace mpm::reference {
 class ManufacturedSolution;
@@ -30,6 +31,7 @@ struct CheckedSubject {
   Scene scene;                                                    ///< without bodies for an element test
   std::shared_ptr<const reference::ManufacturedSolution> motion;  ///< what drives the scene; may be null
   std::optional<ElementTest> element;
+  ModelRequest model;  ///< how much of the scene is to be simulated
 };
 
 /// Takes the scene or the element test out of a case, unchecked. Throws Refusal unless there is exactly one.

@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "vv/run_groups.hpp"
+
 namespace mpm::vv {
 namespace {
 
@@ -314,12 +316,26 @@ std::size_t culprit(const Subject& subject, const std::vector<SweepAxis>& sweep,
                 describe(chosen_value(sweep, choice, axis)) + ", which makes it " + refusal.found());
 }
 
+/// What an axis makes of the subject in a run, in the words of a variant.
+Json change_of(const SweepAxis& axis, std::size_t chosen) {
+  Json set = Json::object(), remove = Json::array();
+  if (axis.variants.empty()) {
+    set[axis.parameter] = axis.values[chosen];
+    for (const Follower& follower : axis.with) set[follower.parameter] = follower.values[chosen];
+  } else {
+    for (const auto& [parameter, value] : axis.variants[chosen].set) set[parameter] = value;
+    for (const std::string& parameter : axis.variants[chosen].remove) remove.push_back(parameter);
+  }
+  return {{"set", set}, {"remove", remove}};
+}
+
 RunRequest read_run(const Subject& subject, const std::vector<SweepAxis>& sweep, const Choice& choice) {
   RunRequest run;
   Subject resolved = subject;
   std::vector<const Variant*> variants;
   for (std::size_t axis = 0; axis < sweep.size(); ++axis) {
     run.parameters.emplace_back(sweep[axis].parameter, chosen_value(sweep, choice, axis));
+    run.changes.push_back(change_of(sweep[axis], choice[axis]));
     put(sweep[axis], choice[axis], resolved);
     if (!sweep[axis].variants.empty()) variants.push_back(&sweep[axis].variants[choice[axis]]);
   }
@@ -328,6 +344,7 @@ RunRequest read_run(const Subject& subject, const std::vector<SweepAxis>& sweep,
     CheckedSubject checked = read_checked(resolved);
     run.scene = std::move(checked.scene);
     run.motion = std::move(checked.motion);
+    run.model_request = checked.model;
     run.element = std::move(checked.element);
   } catch (const Refusal& refusal) {
     refuse_run(refusal, subject, sweep, choice);
@@ -372,6 +389,46 @@ Selector read_selector(const std::string& parameter, const JsonPlace& place,
   return {parameter, read_distinct_values(place)};
 }
 
+/// Combinations that are not run.
+class Omissions {
+ public:
+  Omissions(const JsonPlace& place, const std::vector<SweepAxis>& sweep) : place_(place), sweep_(sweep) {
+    if (!place.present()) return;
+    for (const JsonPlace& entry : place.some_elements()) {
+      entries_.push_back(entry);
+      omitted_.push_back(read_where(entry, sweep));
+    }
+    takes_away_.resize(entries_.size(), false);
+  }
+
+  /// Whether this combination is one of them.
+  bool omit(const Choice& choice) {
+    Parameters parameters;
+    for (std::size_t axis = 0; axis < sweep_.size(); ++axis)
+      parameters.emplace_back(sweep_[axis].parameter, chosen_value(sweep_, choice, axis));
+    for (std::size_t k = 0; k < omitted_.size(); ++k) {
+      if (!selects(omitted_[k], parameters)) continue;
+      takes_away_[k] = true;
+      return true;
+    }
+    return false;
+  }
+
+  /// To be called when every combination has been asked for.
+  void require_sense(const std::vector<RunRequest>& left) const {
+    for (std::size_t k = 0; k < entries_.size(); ++k)
+      if (!takes_away_[k]) entries_[k].refuse("runs that no earlier entry takes away");
+    if (left.empty()) place_.refuse("combinations that leave a run");
+  }
+
+ private:
+  JsonPlace place_;
+  const std::vector<SweepAxis>& sweep_;
+  std::vector<JsonPlace> entries_;
+  std::vector<std::vector<Selector>> omitted_;
+  std::vector<bool> takes_away_;
+};
+
 }  // namespace
 
 std::vector<SweepAxis> read_sweep(const JsonPlace& place, const Subject& subject) {
@@ -387,13 +444,22 @@ std::vector<SweepAxis> read_sweep(const JsonPlace& place, const Subject& subject
   return sweep;
 }
 
-std::vector<RunRequest> expand(const Subject& subject, const std::vector<SweepAxis>& sweep) {
+std::vector<RunRequest> expand(const Subject& subject, const std::vector<SweepAxis>& sweep,
+                               const JsonPlace& without) {
   std::vector<RunRequest> runs;
+  Omissions omissions(without, sweep);
   Choice choice(sweep.size(), 0);
   do {
-    runs.push_back(read_run(subject, sweep, choice));
+    if (!omissions.omit(choice)) runs.push_back(read_run(subject, sweep, choice));
   } while (advance(choice, sweep));
+  omissions.require_sense(runs);
   return runs;
+}
+
+Subject with_value(const SweepAxis& axis, std::size_t chosen, const Subject& subject) {
+  Subject changed = subject;
+  put_alone(axis, chosen, changed);
+  return changed;
 }
 
 const SweepAxis& read_axis(const JsonPlace& place, const std::vector<SweepAxis>& sweep) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -13,9 +14,14 @@ namespace mpm::vv {
 /// have or that is changed twice, for values that do not go together, and for more runs than can be meant.
 std::vector<SweepAxis> read_sweep(const JsonPlace& place, const Subject& subject);
 
-/// One run for every combination of swept values, the last axis varying fastest. Throws Refusal for the first
-/// that cannot start: at the swept value, or below it, that is to blame.
-std::vector<RunRequest> expand(const Subject& subject, const std::vector<SweepAxis>& sweep);
+/// One run for every combination of swept values, the last axis varying fastest, but for those that an entry
+/// of `without` selects, which may be absent. Throws Refusal for the first that cannot start: at the swept
+/// value, or below it, that is to blame; and for an entry that takes nothing away, or the last run there is.
+std::vector<RunRequest> expand(const Subject& subject, const std::vector<SweepAxis>& sweep,
+                               const JsonPlace& without);
+
+/// The subject with one value of an axis in it, as if there were no other axis; `chosen` counts its values.
+Subject with_value(const SweepAxis& axis, std::size_t chosen, const Subject& subject);
 
 /// The axis whose parameter is named at `place`.
 const SweepAxis& read_axis(const JsonPlace& place, const std::vector<SweepAxis>& sweep);

@@ -13,6 +13,8 @@
 /// What accuracy costs: the runs of a case as configurations of one problem, each with its error and its price.
 namespace mpm::vv {
 
+struct RunVerdict;
+
 /// How long the steps of a run take on this machine, alone on it and with one thread.
 struct Timing {
   double median = 0.0, low = 0.0, high = 0.0;  ///< of the repeats, for the whole run [s]; 0 < low <= median <= high
@@ -61,5 +63,28 @@ struct TradeVerdict {
   TradeReference reference;
   std::vector<TradePoint> points;  ///< in the order of the runs
 };
+
+/// Of the runs of a case, in their order; nothing of a run that was not timed.
+using Timings = std::vector<std::optional<Timing>>;
+
+/// What the trades of a case say: one verdict for each problem of each trade, in the order of the case.
+/// `runs` are all of the case, with their metrics and curves; `timings` has an entry for each of them, or
+/// none at all.
+///
+/// - The error of a metric is its magnitude. That of a curve is its L2 distance from the mean of the finest
+///   runs, relative to it, over 200 abscissae; a run that is part of that mean is compared with the mean of
+///   the other families. Its uncertainty is the L2 norm of half the range of the families, of all of them in
+///   either case.
+/// - A run that did not complete, lacks the metric, or whose curve does not cover the stretch has a failure
+///   and no error; if one of the finest does, no run of the problem has an error.
+/// - On a front is what has an error, is not of the reference, and is beaten in error or cost by nothing that
+///   is at least as good in the other.
+std::vector<TradeVerdict> judge_trades(const Case& definition, const std::vector<RunVerdict>& runs,
+                                       const Timings& timings);
+
+/// Adds the metrics trade.<number>.error and trade.<number>.bound to the runs that have them; a trade's
+/// number is that in the case, from 1.
+void keep_trade_metrics(const Case& definition, const std::vector<TradeVerdict>& trades,
+                        std::vector<RunVerdict>& runs);
 
 }  // namespace mpm::vv

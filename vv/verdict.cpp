@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "vv/measured_trades.hpp"
+
 namespace mpm::vv {
 namespace {
 
@@ -129,6 +131,66 @@ Json curve_files_to_json(const Case& definition) {
   return json;
 }
 
+Json timing_to_json(const std::optional<Timing>& timing) {
+  if (!timing) return nullptr;
+  return {{"median", number(timing->median)},
+          {"low", number(timing->low)},
+          {"high", number(timing->high)},
+          {"repeats", timing->repeats},
+          {"whole", timing->whole}};
+}
+
+/// What makes a run this configuration: the changes of all axes but those of the problem, in one.
+Json changes_to_json(const RunRequest& run, const TradeVerdict& trade) {
+  Json changes = {{"set", Json::object()}, {"remove", Json::array()}};
+  for (std::size_t axis = 0; axis < run.changes.size(); ++axis) {
+    const std::string& parameter = run.parameters[axis].first;
+    const bool of_problem = std::any_of(trade.problem.begin(), trade.problem.end(),
+                                        [&](const auto& entry) { return entry.first == parameter; });
+    if (of_problem) continue;
+    changes["set"].update(run.changes[axis]["set"]);
+    for (const Json& pointer : run.changes[axis]["remove"]) changes["remove"].push_back(pointer);
+  }
+  return changes;
+}
+
+Json trades_to_json(const CaseVerdict& verdict) {
+  Json json = Json::array();
+  for (const TradeVerdict& trade : verdict.trades) {
+    const TradeReference& reference = trade.reference;
+    Json entry = {{"title", trade.title},
+                  {"problem", parameters_to_json(trade.problem)},
+                  {"error_name", trade.error_name},
+                  {"reference",
+                   {{"source", reference.source},
+                    {"uncertainty", number(reference.uncertainty)},
+                    {"x", numbers(reference.x)},
+                    {"y", numbers(reference.y)},
+                    {"spread", numbers(reference.spread)}}},
+                  {"points", Json::array()}};
+    for (const TradePoint& point : trade.points) {
+      const bool judged = point.failure.empty();
+      entry["points"].push_back({{"run", point.run},
+                                 {"configuration", parameters_to_json(point.configuration)},
+                                 {"changes", changes_to_json(verdict.definition.runs[point.run], trade)},
+                                 {"family", point.family},
+                                 {"cell_size", number(point.cell_size)},
+                                 {"error", number(point.error)},
+                                 {"uncertainty", judged ? number(point.uncertainty) : Json(nullptr)},
+                                 {"failure", point.failure},
+                                 {"of_reference", point.of_reference},
+                                 {"seconds", timing_to_json(point.timing)},
+                                 {"particle_steps", number(point.work.particle_steps)},
+                                 {"bytes", number(point.work.bytes)},
+                                 {"operations", number(point.work.operations)},
+                                 {"on_time_front", point.on_time_front},
+                                 {"on_work_front", point.on_work_front}});
+    }
+    json.push_back(std::move(entry));
+  }
+  return json;
+}
+
 Json run_to_json(const RunVerdict& run) {
   const Record& record = run.record;
   return {{"parameters", parameters_to_json(run.parameters)},
@@ -139,6 +201,7 @@ Json run_to_json(const RunVerdict& run) {
             {"steps", record.cost.steps},
             {"particle_steps", record.cost.particle_steps},
             {"memory_bytes", record.cost.memory_bytes}}},
+          {"model", model_to_json(record.model)},
           {"comparisons", comparisons_to_json(run.comparisons)},
           {"gates", gates_to_json(run.gates)},
           {"time_step", number(record.time_step)},
@@ -174,6 +237,42 @@ Json series_to_json(const SeriesVerdict& series) {
           {"gates", gates_to_json(series.gates)}};
 }
 
+Json trial_to_json(const AdviceTrial& trial) {
+  return {{"title", trial.title},
+          {"problem", parameters_to_json(trial.problem)},
+          {"asked", trial.asked},
+          {"drawn_from", trial.drawn_from},
+          {"between", trial.between},
+          {"configuration", parameters_to_json(trial.configuration)},
+          {"promised", number(trial.promised)},
+          {"found", number(trial.found)},
+          {"regret", number(trial.regret)},
+          {"kept", trial.kept},
+          {"no_offer", trial.no_offer},
+          {"lack", trial.lack}};
+}
+
+Json advice_to_json(const std::optional<AdviceVerdict>& advice) {
+  if (!advice) return nullptr;
+  Json json = {{"of", advice->of},
+               {"lack", advice->lack},
+               {"metrics", numbers_by_name(advice->metrics)},
+               {"trials", Json::array()}};
+  for (const AdviceTrial& trial : advice->trials) json["trials"].push_back(trial_to_json(trial));
+  return json;
+}
+
+/// What was run, so that others can tell whether theirs is like it: the scene or the element test as written and,
+/// where advice can be drawn from it, what makes the trades.
+void add_texts(const Case& definition, Json& json) {
+  for (const char* subject : {"scene", "element"})
+    if (definition.text.contains(subject)) json[subject] = definition.text[subject];
+  if (definition.trades.empty()) return;
+  json["definition"] = Json::object();
+  for (const std::string& key : defining_keys())
+    if (definition.text.contains(key)) json["definition"][key] = definition.text[key];
+}
+
 Json case_to_json(const CaseVerdict& verdict) {
   Json json = {{"id", verdict.definition.id},
                {"title", verdict.definition.title},
@@ -184,7 +283,10 @@ Json case_to_json(const CaseVerdict& verdict) {
                {"runs", Json::array()},
                {"series", Json::array()},
                {"pairs", pairs_to_json(verdict.pairs)},
+               {"trades", trades_to_json(verdict)},
+               {"advice", advice_to_json(verdict.advice)},
                {"gates", gates_to_json(verdict.gates)}};
+  add_texts(verdict.definition, json);
   for (const RunVerdict& run : verdict.runs) json["runs"].push_back(run_to_json(run));
   for (const SeriesVerdict& series : verdict.series) json["series"].push_back(series_to_json(series));
   return json;
@@ -348,6 +450,7 @@ Json to_json(const CampaignVerdict& verdict) {
                {"passed", verdict.passed()},
                {"reused", verdict.reused},
                {"wall_seconds", number(verdict.wall_seconds)},
+               {"timing_seconds", number(verdict.timing_seconds)},
                {"cases", Json::array()}};
   for (const CaseVerdict& case_verdict : verdict.cases) json["cases"].push_back(case_to_json(case_verdict));
   return json;

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -96,6 +98,32 @@ struct PairsVerdict {
   ModelFactor factor;
 };
 
+/// One question put to the advice from another case, and what a run of this case says to the answer.
+struct AdviceTrial {
+  std::string title;                                      ///< of the trade of this case
+  std::vector<std::pair<std::string, Json>> problem;      ///< of this case
+  double asked = 0.0;                                     ///< error [-]
+  std::string drawn_from = {};                            ///< measured problems, for a person: "1G and 50G"
+  bool between = false;                                   ///< those that this one lies between
+  std::vector<std::pair<std::string, Json>> configuration = {};  ///< advised; empty without advice
+  double promised = std::numeric_limits<double>::quiet_NaN();    ///< bound of the error [-]
+  double found = std::numeric_limits<double>::quiet_NaN();  ///< bound of the error that the run here has [-]
+  /// Bytes of that run over those of the cheapest that meets the error [-].
+  double regret = std::numeric_limits<double>::quiet_NaN();
+  bool kept = false;      ///< found is at most what was asked
+  bool no_offer = false;  ///< the advice was that nothing measured meets the error: no promise to keep
+  std::string lack = {};  ///< why there is no advice or nothing was found, for a person; empty beside a number found
+};
+
+/// How advice from another case turned out.
+struct AdviceVerdict {
+  std::string of;         ///< id of the case it was drawn from
+  bool own = false;       ///< that is this case: the advice was drawn from every second configuration
+  std::string lack = {};  ///< why nothing was put to the test; empty beside trials
+  std::vector<AdviceTrial> trials = {};
+  std::map<std::string, double> metrics = {};  ///< of `advice_catalogue()`; finite ones only
+};
+
 struct CaseVerdict {
   Case definition;
   CaseStatus status = CaseStatus::not_run;
@@ -104,7 +132,9 @@ struct CaseVerdict {
   std::vector<SeriesVerdict> series;
   std::vector<PairsVerdict> pairs;  ///< in the order of the case's
   std::vector<TradeVerdict> trades;  ///< in the order of the case's, one a problem
-  std::vector<GateResult> gates;  ///< on pairs, and those that found nothing to judge: every one of these a failure
+  std::optional<AdviceVerdict> advice;  ///< of a case that puts advice to the test
+  /// On pairs and on advice, and those that found nothing to judge: every one of these a failure.
+  std::vector<GateResult> gates;
 };
 
 /// Every gate result of a case: of its runs, its series and the case as a whole.
@@ -126,6 +156,7 @@ struct CampaignVerdict {
   bool quick = false;
   int reused = 0;  ///< runs whose stored record was still valid, repeats included
   double wall_seconds = 0.0;
+  double timing_seconds = 0.0;  ///< of these, for timing the runs of trades; 0 if all of it was done before
   std::vector<CaseVerdict> cases;
   Counts counts() const;
   bool passed() const;  ///< every gate good, every control red, every case run

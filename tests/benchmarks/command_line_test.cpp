@@ -73,7 +73,8 @@ TEST_F(BenchTest, refuses_files_it_cannot_use) {
 TEST_F(BenchTest, says_what_it_can_do) {
   const Answer answer = ask({"--help"});
   EXPECT_EQ(answer.code, 0);
-  for (const char* option : {"--json", "--quick", "--filter", "--footing", "--against", "--compare"}) {
+  for (const char* option :
+       {"--json", "--quick", "--filter", "--features", "--footing", "--against", "--compare"}) {
     EXPECT_NE(answer.out.find(option), std::string::npos) << option;
   }
 }
@@ -119,6 +120,18 @@ TEST_F(BenchTest, measures_writes_and_compares) {
   const Answer slower = ask({"--quick", "--filter", "^column", "--json", first, "--against", old});
   EXPECT_EQ(slower.code, 1);
   EXPECT_NE(slower.out.find("SLOWER"), std::string::npos) << slower.out;
+}
+
+TEST_F(BenchTest, measures_features_alone) {
+  const std::string json = file("features.json").string();
+  const Answer answer = ask(
+      {"--quick", "--features", "--filter", "^feature/(damping|second_dimension)$|^column", "--json", json});
+  ASSERT_EQ(answer.code, 0) << answer.err;
+  const Results results = read_results(json);
+  EXPECT_TRUE(results.steps.empty()) << "whole steps were not asked for";
+  EXPECT_TRUE(results.memory.empty());
+  ASSERT_EQ(results.features.size(), 2u);
+  EXPECT_NE(answer.out.find("damping: 0"), std::string::npos) << answer.out;
 }
 
 TEST_F(BenchTest, runs_a_footing_to_its_end) {

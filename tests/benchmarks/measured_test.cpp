@@ -24,6 +24,25 @@ TEST(Measured, nothing_and_what_is_no_number_have_no_median) {
   EXPECT_THROW(summary_of({std::numeric_limits<double>::infinity()}), std::invalid_argument);
 }
 
+TEST(Measured, an_interval_of_the_median_leaves_out_what_chance_puts_outside) {
+  const auto interval_of_first = [](int count) {
+    std::vector<double> values;
+    for (int k = count; k >= 1; --k) values.push_back(k);
+    return interval_of_median(values);
+  };
+  // The probability that all of n values lie on one side of the median is 2 / 2^n: 6.2 % of five, 3.1 % of
+  // six.
+  EXPECT_EQ(interval_of_first(1), (Measured{1, 1, 1}));
+  EXPECT_EQ(interval_of_first(5), (Measured{3, 1, 5}));
+  EXPECT_EQ(interval_of_first(6), (Measured{3.5, 1, 6}));
+  // From tables of the sign test at 5 %.
+  EXPECT_EQ(interval_of_first(8), (Measured{4.5, 1, 8}));
+  EXPECT_EQ(interval_of_first(9), (Measured{5, 2, 8}));
+  EXPECT_EQ(interval_of_first(12), (Measured{6.5, 3, 10}));
+  EXPECT_EQ(interval_of_first(25), (Measured{13, 8, 18}));
+  EXPECT_THROW(interval_of_median({}), std::invalid_argument);
+}
+
 TEST(Measured, a_summary_keeps_the_extremes) {
   const Measured summary = summary_of({12, 9, 10, 11, 17});
   EXPECT_EQ(summary, (Measured{11, 9, 17}));

@@ -51,6 +51,7 @@ TEST(Results, empty_ones_survive_too) {
   results.runs.clear();
   results.memory.clear();
   results.start_up.clear();
+  results.features.clear();
   EXPECT_EQ(parse_results(json_of(results).dump(), "x"), results);
 }
 
@@ -65,6 +66,35 @@ TEST(Results, have_the_agreed_keys) {
   EXPECT_EQ(json.at("runs").at(0).at("ending"), "reached_time");
   EXPECT_EQ(json.at("memory").at(0).at("bytes_per_particle"), 173.5);
   EXPECT_EQ(json.at("start_up").at(0).at("seconds"), 0.01);
+  const Json& feature = json.at("features").at(0);
+  EXPECT_EQ(feature.at("ratio"), 1.05);
+  EXPECT_EQ(feature.at("without").at("step"), 20e-6);
+  EXPECT_EQ(feature.at("with").at("bytes"), 160000);
+  EXPECT_EQ(feature.at("spelled").at("of"), "without");
+  EXPECT_EQ(feature.at("spelled").at("same_bits"), true);
+  EXPECT_EQ(feature.at("spelled").at("verdict"), "within_limit");
+}
+
+TEST(Results, of_a_time_before_features_have_none) {
+  Json json = json_of(made_up_results());
+  json.erase("features");
+  EXPECT_TRUE(parse_results(json.dump(), "x").features.empty());
+  json["features"] = json_of(made_up_results()).at("features");
+  json["features"][0]["spelled"] = nullptr;
+  EXPECT_FALSE(parse_results(json.dump(), "x").features.at(0).spelled);
+}
+
+TEST(Results, a_default_is_free_within_the_limit_or_as_far_as_noise_tells) {
+  using enum SpelledResult::Verdict;
+  SpelledResult spelled;
+  spelled.ratio = {1.01, 1.0, 1.02};
+  EXPECT_EQ(spelled.verdict(), within_limit);
+  spelled.ratio = {0.9, 0.8, 0.95};
+  EXPECT_EQ(spelled.verdict(), within_limit) << "faster is free";
+  spelled.ratio = {1.05, 1.0, 1.1};
+  EXPECT_EQ(spelled.verdict(), within_noise);
+  spelled.ratio = {1.05, 1.03, 1.1};
+  EXPECT_EQ(spelled.verdict(), beyond);
 }
 
 TEST(Results, a_step_without_target_has_none_in_the_file) {
@@ -100,6 +130,10 @@ TEST(Results, bad_ones_are_refused_with_file_and_place) {
   expect_refusal("/steps", [](Json& json) { json["steps"].push_back(json["steps"][0]); });
   expect_refusal("/kernels", [](Json& json) { json["kernels"].push_back(json["kernels"][0]); });
   expect_refusal("/limits/0", [](Json& json) { json["limits"][0]["high"] = 1.0; });
+  expect_refusal("/features/0/spelled", [](Json& json) { json["features"][0].erase("spelled"); });
+  expect_refusal("/features/0/spelled/of", [](Json& json) { json["features"][0]["spelled"]["of"] = "none"; });
+  expect_refusal("/features/0/with/bytes", [](Json& json) { json["features"][0]["with"]["bytes"] = 1.5; });
+  expect_refusal("/features", [](Json& json) { json["features"].push_back(json["features"][0]); });
   expect_refusal("/machine/cores", [](Json& json) { json["machine"]["cores"] = 1.5; });
   EXPECT_THROW(parse_results("[]", "x"), ResultsError);
   EXPECT_THROW(parse_results("{", "x"), ResultsError);

@@ -140,6 +140,41 @@ TEST(PerformanceSection, ShowsRunsLimitsKernelsMemoryAndStartUp) {
   EXPECT_FALSE(has(html, "What these measurements lack"));
 }
 
+TEST(PerformanceSection, ShowsWhatFeaturesCost) {
+  const std::string html = section(support::demo_performance_json());
+  EXPECT_TRUE(has(html, "What a feature costs, and that an unused one costs nothing"));
+  EXPECT_TRUE(
+      has(html, "1 of 1 defaults that were said left every bit and byte as it was; 1 took at most 2 % more"));
+  EXPECT_TRUE(has(html,
+                  "<tr><td>local damping<br><small>damped; without: none</small></td><td class=\"n\">20</td>"
+                  "<td class=\"n\">25.0</td><td class=\"n\">1.25</td><td class=\"n\">1.12\u00a0–\u00a01.38</td>"
+                  "<td class=\"n\">1.25</td><td class=\"n\">160</td><td class=\"n\">176</td>"
+                  "<td><code>damping: 0</code></td>"));
+  EXPECT_TRUE(has(html, "WITHIN 2 %</span></td><td>equal</td><td>the same</td>"));
+  const std::size_t row = html.find("<tr><td>footing of particles");
+  ASSERT_NE(row, std::string::npos);
+  const std::string cells = html.substr(row, html.find("</tr>", row) - row);
+  EXPECT_TRUE(has(cells, "<td class=\"n\">10</td>"))
+      << "of a simulated second, whose steps are longer without it";
+  EXPECT_TRUE(has(cells, "nothing but its absence"));
+  EXPECT_EQ(count(html, "class=\"bad\""), 0U);
+}
+
+TEST(PerformanceSection, ShowsAFeatureThatIsNotFree) {
+  Json json = support::demo_performance_json();
+  Json& spelled = json["features"][0]["spelled"];
+  spelled["same_bits"] = false;
+  spelled["bytes"] = 160008;
+  spelled["verdict"] = "beyond";
+  std::string html = section(json);
+  EXPECT_TRUE(has(html, "BEYOND 2 %</span></td><td class=\"bad\">+8</td><td class=\"bad\">others</td>"));
+  EXPECT_TRUE(has(html, "0 of 1 defaults that were said left every bit and byte as it was; 0 took"));
+  spelled["verdict"] = "within_noise";
+  html = section(json);
+  EXPECT_TRUE(has(html, "WITHIN NOISE"));
+  EXPECT_TRUE(has(html, "and of 1 the noise"));
+}
+
 TEST(PerformanceSection, SaysWhatTheMeasurementsLack) {
   Json json = support::demo_performance_json();
   Json steps = Json::array();
@@ -147,13 +182,16 @@ TEST(PerformanceSection, SaysWhatTheMeasurementsLack) {
     if (step["threads"] == 1 && step["particles"] == 10000 && step["precision"] == "float64")
       steps.push_back(step);
   json["steps"] = steps;
-  for (const char* key : {"limits", "kernels", "runs", "memory", "start_up"}) json[key] = Json::array();
+  for (const char* key : {"limits", "kernels", "runs", "memory", "start_up", "features"})
+    json[key] = Json::array();
   const std::string html = section(json);
   for (const char* lack :
        {"at several numbers of particles", "No roofline", "on one thread and on several",
         "in both precisions", "No whole run was timed", "limits of the machine were not measured",
-        "No kernel was measured by itself", "Memory was not measured", "Start-up was not measured"})
+        "No kernel was measured by itself", "Memory was not measured", "Start-up was not measured",
+        "What features cost was not measured"})
     EXPECT_TRUE(has(html, lack)) << lack;
+  EXPECT_FALSE(has(html, "an unused one"));
   EXPECT_FALSE(has(html, "No whole step was measured"));
   json["steps"] = Json::array();
   EXPECT_TRUE(has(section(json), "No whole step was measured"));
@@ -166,7 +204,8 @@ TEST(PerformanceSection, EscapesWhatTheFileSays) {
   for (const char* pointer :
        {"/revision", "/date", "/compiler", "/machine/processor", "/limits/0/title", "/steps/0/scene",
         "/steps/1/scheme", "/steps/2/law", "/steps/3/precision", "/steps/4/order", "/kernels/0/name",
-        "/runs/0/title", "/runs/0/ending", "/memory/0/scene", "/memory/0/law", "/start_up/0/scene"})
+        "/runs/0/title", "/runs/0/ending", "/memory/0/scene", "/memory/0/law", "/start_up/0/scene",
+        "/features/0/title", "/features/0/with/what", "/features/0/spelled/what"})
     json[Json::json_pointer(pointer)] = evil;
   PerformanceEvidence evidence = evidence_of(json);
   evidence.history = {evidence_of(json).measured.value()};

@@ -87,6 +87,27 @@ TEST(PerformanceFile, HoldsWhatWasMeasured) {
   EXPECT_EQ(p.memory[0].bytes_per_particle, 222.0);
   ASSERT_EQ(p.start_up.size(), 1U);
   EXPECT_EQ(p.start_up[0].seconds, 0.0125);
+  ASSERT_EQ(p.features.size(), 2U);
+  const FeaturePrice& damping = p.features[0];
+  EXPECT_EQ(damping.title, "local damping");
+  EXPECT_EQ(damping.without.what, "none");
+  EXPECT_EQ(damping.with.bytes, 176000);
+  EXPECT_EQ(damping.with.step.median, 25e-6);
+  EXPECT_EQ(damping.ratio.high, 1.375);
+  EXPECT_DOUBLE_EQ(damping.ratio_of_time(), 1.25);
+  ASSERT_TRUE(damping.spelled);
+  EXPECT_EQ(damping.spelled->what, "damping: 0");
+  EXPECT_FALSE(damping.spelled->of_with);
+  EXPECT_TRUE(damping.spelled->same_bits);
+  EXPECT_EQ(damping.spelled->verdict, "within_limit");
+  EXPECT_FALSE(p.features[1].spelled);
+  EXPECT_DOUBLE_EQ(p.features[1].ratio_of_time(), 10.0);
+}
+
+TEST(PerformanceFile, MayBeOfATimeBeforeFeaturesWereMeasured) {
+  Json json = support::demo_performance_json();
+  json.erase("features");
+  EXPECT_TRUE(support::performance_of(json).features.empty());
 }
 
 TEST(PerformanceFile, ATargetIsMetFromItsValueOn) {
@@ -115,7 +136,7 @@ TEST(PerformanceFile, WhatTheFormatDoesNotHaveIsLetPass) {
 }
 
 TEST(PerformanceFile, WhatWasNotMeasuredMayBeEmptyOrNull) {
-  for (const char* key : {"limits", "steps", "kernels", "runs", "memory", "start_up"})
+  for (const char* key : {"limits", "steps", "kernels", "runs", "memory", "start_up", "features"})
     EXPECT_EQ(complaint_with(std::string("/") + key, Json::array()), "") << key;
   for (const char* key : {"target", "bytes", "flops", "share_of_bandwidth", "share_of_peak"})
     EXPECT_EQ(complaint_with(std::string("/steps/0/") + key, nullptr), "") << key;
@@ -127,7 +148,7 @@ TEST(PerformanceFile, EveryKeyOfTheFormatMustBeThere) {
   const Json demo = support::demo_performance_json();
   const auto all_needed = [](const std::string& parent, const Json& object) {
     for (const auto& [key, value] : object.items()) {
-      if (key == "settlement") continue;
+      if (key == "settlement" || key == "features") continue;
       const std::string pointer = parent + "/" + key, message = complaint_without(pointer);
       EXPECT_TRUE(message.starts_with("m.json: " + pointer + ": expected ")) << pointer << ": " << message;
       EXPECT_TRUE(message.ends_with(", found nothing: the key is missing")) << pointer << ": " << message;
@@ -135,7 +156,7 @@ TEST(PerformanceFile, EveryKeyOfTheFormatMustBeThere) {
   };
   all_needed("", demo);
   all_needed("/machine", demo["machine"]);
-  for (const char* entries : {"limits", "steps", "kernels", "runs", "memory", "start_up"})
+  for (const char* entries : {"limits", "steps", "kernels", "runs", "memory", "start_up", "features"})
     all_needed(std::string("/") + entries + "/0", demo[entries][0]);
 }
 
@@ -163,6 +184,10 @@ TEST(PerformanceFile, ABadValueIsToldWithItsPlace) {
       "a name of its own, found \"footing/mpm/usl/mohr_coulomb/float64/1000/1\", which an earlier entry has");
   expect("/limits/0/unit", "GB/s", "one of B/s, flop/s, particles/s, found \"GB/s\" (did you mean \"B/s\"?)");
   expect("/runs/1/seconds", -1, "a number above 0, found -1");
+  expect("/features/0/low", 2, "at most the ratio, found 2");
+  expect("/features/0/with/bytes", 1.5, "a whole number above 0, found 1.5");
+  expect("/features/0/spelled/of", "one", "one of with, without, found \"one\"");
+  expect("/features/0/spelled/verdict", "free", "one of within_limit, within_noise, beyond, found \"free\"");
 }
 
 TEST(PerformanceFile, AnotherFormatIsToldBeforeAnythingElse) {

@@ -302,7 +302,7 @@ TEST(VerificationOfLoads, ABodyThatGrowsHeavierSettlesToItsFinalWeight) {
   Scene scene = confined_block();
   scene.damping = 0.8;
   scene.gravity.acceleration = {0.0, -10.0};
-  scene.bodies[0].density_ramp = DensityRamp{3000.0, 0.1, 0.2};
+  scene.bodies[0].density_ramp = DensityRamp{0.1, {{3000.0, 0.2}}};
   scene.termination = AtTime{0.6};
   const Simulation simulation = run_to_end(scene);
   const ParticleFields fields = simulation.particles();
@@ -314,6 +314,94 @@ TEST(VerificationOfLoads, ABodyThatGrowsHeavierSettlesToItsFinalWeight) {
   EXPECT_NEAR(mean, -3000.0 * 10 * 0.2, 0.01 * 6000);
   EXPECT_DOUBLE_EQ(scene.bodies[0].density_at(0.05), 1000.0);
   EXPECT_DOUBLE_EQ(scene.bodies[0].density_at(0.2), 2000.0);
+}
+
+TEST(Body, ADensityRampGoesFromStageToStage) {
+  Body body;
+  body.density = 1000.0;
+  body.density_ramp = DensityRamp{0.1, {{3000.0, 0.2}, {2000.0, 0.5}}};
+  EXPECT_DOUBLE_EQ(body.density_at(0.05), 1000.0);
+  EXPECT_DOUBLE_EQ(body.density_at(0.2), 2000.0);
+  EXPECT_DOUBLE_EQ(body.density_at(0.3), 3000.0);
+  EXPECT_DOUBLE_EQ(body.density_at(0.4), 2800.0);
+  EXPECT_DOUBLE_EQ(body.density_at(9.0), 2000.0);
+  EXPECT_DOUBLE_EQ(body.density_ramp->end(), 0.8);
+  EXPECT_DOUBLE_EQ(body.lightest(), 1000.0);
+  body.inertia = 500.0;
+  EXPECT_DOUBLE_EQ(body.lightest(), 500.0);
+}
+
+TEST(VerificationOfLoads, InertiaSlowsAFallAndLeavesTheWeight) {
+  Scene scene = free_block();
+  scene.time_step = GivenTimeStep{1e-4};
+  scene.gravity.acceleration = {0.0, -10.0};
+  const double own = momentum_of(run_to_end(scene).particles())[1];
+  scene.bodies[0].inertia = 4 * scene.bodies[0].density;
+  const Simulation heavy = run_to_end(scene);
+  const ParticleFields fields = heavy.particles();
+  EXPECT_NEAR(momentum_of(fields)[1], own, 1e-9 * std::abs(own));  // the same force for the same time
+  for (std::size_t p = 0; p < fields.mass.size(); ++p) {
+    EXPECT_NEAR(fields.velocity[2 * p + 1], -10.0 / 4 * heavy.time(), 1e-9);
+  }
+}
+
+/// Inertia four times as large, with twice the time for everything, is the same motion at half the speed.
+TEST(VerificationOfLoads, ScalingTheInertiaOfAllIsTakingTheTimeFromTheLoading) {
+  for (const UpdateOrder order : {UpdateOrder::musl, UpdateOrder::usl, UpdateOrder::usf}) {
+    Scene scene = confined_block();
+    scene.update_order = order;
+    scene.damping = 0.8;
+    scene.gravity.acceleration = {0.0, -10.0};
+    scene.bodies[0].inertia = scene.bodies[0].density;
+    scene.bodies[0].density_ramp = DensityRamp{0.01, {{3000.0, 0.02}, {2500.0, 0.01}}};
+    scene.time_step = GivenTimeStep{1e-4};
+    scene.termination = AtTime{0.05};
+    const ParticleFields plain = run_to_end(scene).particles();
+
+    *scene.bodies[0].inertia *= 4;
+    scene.bodies[0].density_ramp = DensityRamp{0.02, {{3000.0, 0.04}, {2500.0, 0.02}}};
+    scene.time_step = GivenTimeStep{2e-4};
+    scene.termination = AtTime{0.1};
+    const ParticleFields scaled = run_to_end(scene).particles();
+    double largest = 0.0;
+    for (std::size_t i = 0; i < plain.displacement.size(); ++i) {
+      largest = std::max(largest, std::abs(plain.displacement[i]));
+    }
+    ASSERT_GT(largest, 1e-5);
+    for (std::size_t i = 0; i < plain.displacement.size(); ++i) {
+      EXPECT_NEAR(scaled.displacement[i], plain.displacement[i], 1e-9 * largest);
+      EXPECT_NEAR(scaled.velocity[i], plain.velocity[i] / 2, 1e-6 * largest / 0.05);
+    }
+  }
+}
+
+TEST(VerificationOfLoads, ABodyWithItsOwnDensityForInertiaMovesAsOneWithout) {
+  Scene scene = confined_block();
+  scene.damping = 0.8;
+  scene.gravity.acceleration = {0.0, -10.0};
+  const ParticleFields plain = run_to_end(scene).particles();
+  scene.bodies[0].inertia = scene.bodies[0].density;
+  const ParticleFields same = run_to_end(scene).particles();
+  EXPECT_EQ(same.displacement, plain.displacement);
+  EXPECT_EQ(same.stress, plain.stress);
+}
+
+TEST(VerificationOfLoads, InertiaOfAGrowingBlockSettlesToItsFinalWeight) {
+  Scene scene = confined_block();
+  scene.damping = 0.8;
+  scene.gravity.acceleration = {0.0, -10.0};
+  scene.bodies[0].density_ramp = DensityRamp{0.1, {{3000.0, 0.2}}};
+  scene.bodies[0].inertia = 2500.0;
+  scene.termination = AtRest{1e-4, 1e-6, 2.0};
+  const Simulation simulation = run_to_end(scene);
+  ASSERT_EQ(simulation.outcome().ending, Ending::at_rest);
+  const ParticleFields fields = simulation.particles();
+  EXPECT_NEAR(std::accumulate(fields.mass.begin(), fields.mass.end(), 0.0), 2500.0 * 0.16, 1e-9);
+  double mean = 0.0;
+  for (std::size_t p = 0; p < fields.mass.size(); ++p) {
+    mean += fields.stress[4 * p + 1] / static_cast<double>(fields.mass.size());
+  }
+  EXPECT_NEAR(mean, -3000.0 * 10 * 0.2, 0.01 * 6000);
 }
 
 TEST(VerificationOfLoads, RestIsNotLookedForBeforeTheLoadsHaveSettled) {

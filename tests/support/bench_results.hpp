@@ -48,6 +48,16 @@ inline bench::Results made_up_results() {
                      .particles = 1000000,
                      .bytes_per_particle = 173.5}};
   results.start_up = {{"footing_paper", 0.01}};
+  results.features = {{.name = "feature/damping",
+                       .title = "local damping",
+                       .without = {"none", 1000, 1e-4, 160000, {20e-6, 19e-6, 22e-6}},
+                       .with = {"damped", 1000, 1e-4, 160000, {21e-6, 20e-6, 23e-6}},
+                       .ratio = {1.05, 1.04, 1.07},
+                       .spelled = bench::SpelledResult{.what = "damping: 0",
+                                                       .of_with = false,
+                                                       .ratio = {1.0, 0.99, 1.01},
+                                                       .bytes = 160000,
+                                                       .same_bits = true}}};
   return results;
 }
 

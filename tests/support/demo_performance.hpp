@@ -52,6 +52,39 @@ inline PerformanceJson run(int threads, double seconds) {
           {"settlement", 0.025},     {"ending", "reached_time"}};
 }
 
+inline PerformanceJson feature_cost(const std::string& what, std::int64_t bytes, double step) {
+  return {{"what", what}, {"particles", 1000}, {"time_step", 1e-4}, {"bytes", bytes},
+          {"step", step}, {"low", 0.9 * step}, {"high", 1.1 * step}};
+}
+
+/// One that costs time and memory and can be switched off, one that cannot.
+inline PerformanceJson features() {
+  PerformanceJson damping = {{"name", "feature/damping"},
+                             {"title", "local damping"},
+                             {"without", feature_cost("none", 160000, 20e-6)},
+                             {"with", feature_cost("damped", 176000, 25e-6)},
+                             {"ratio", 1.25},
+                             {"low", 1.125},
+                             {"high", 1.375},
+                             {"spelled",
+                              {{"what", "damping: 0"},
+                               {"of", "without"},
+                               {"ratio", 1.005},
+                               {"low", 0.995},
+                               {"high", 1.015},
+                               {"bytes", 160000},
+                               {"same_bits", true},
+                               {"verdict", "within_limit"}}}};
+  PerformanceJson rigid = damping;
+  rigid["name"] = "feature/block_footing";
+  rigid["title"] = "footing of particles";
+  rigid["without"]["what"] = "rigid body";
+  rigid["with"]["what"] = "a stiff block";
+  rigid["without"]["time_step"] = 8e-4;
+  rigid["spelled"] = nullptr;
+  return {damping, rigid};
+}
+
 inline PerformanceJson steps() {
   PerformanceJson all = PerformanceJson::array();
   for (const std::string scheme : {"mpm", "ugimp", "cpgimp"}) {
@@ -100,7 +133,8 @@ inline PerformanceJson demo_performance_json() {
              {"precision", "float64"},
              {"particles", 1000000},
              {"bytes_per_particle", 222}}}},
-          {"start_up", {{{"scene", "footing_paper"}, {"seconds", 0.0125}}}}};
+          {"start_up", {{{"scene", "footing_paper"}, {"seconds", 0.0125}}}},
+          {"features", demo::features()}};
 }
 
 /// Reads a text as if it stood in a file of that name.

@@ -64,7 +64,7 @@ class PlainStepper {
     if (is_disturbed_) disturb();
     const double time = static_cast<double>(steps_) * seconds_;
     loading_.set_masses(time, particles_);
-    loading_.set_forces(time, particles_);
+    loading_.set_forces(time, gravity(), particles_);
     rigid_bodies_.hold(time);
     find_nodes();
     step();
@@ -190,11 +190,19 @@ class PlainStepper {
     rigid_bodies_.set_motion(grid_, empty_mass_);
   }
 
-  void move_grid() {
+  /// At the end of the step [m/s^2].
+  Vector<Dim, Real> gravity() const {
     const double level =
         scene_.gravity.level * scene_.gravity.fraction(static_cast<double>(steps_ + 1) * seconds_);
+    Vector<Dim, Real> acceleration;
     for (std::size_t a = 0; a < Dim; ++a)
-      grid_.force[a] += static_cast<Real>(level * scene_.gravity.acceleration[a]) * grid_.mass;
+      acceleration[a] = static_cast<Real>(level * scene_.gravity.acceleration[a]);
+    return acceleration;
+  }
+
+  void move_grid() {
+    const Vector<Dim, Real> acceleration = gravity();
+    for (std::size_t a = 0; a < Dim; ++a) grid_.force[a] += acceleration[a] * grid_.mass;
     edges_.apply(grid_, {0, grid_.rows()});
     rigid_bodies_.take_up(grid_, empty_mass_);
     for (Eigen::Index i = 0; i < grid_.mass.size(); ++i) {

@@ -70,6 +70,7 @@ class RandomScene {
     scene.time_step = StableFraction{between(0.1, 0.4)};
     scene.termination = AtTime{1e9};
     if (scene.dimension == 2) draw_locking_control(scene);
+    if (!scene.driven_motion) draw_inertia(scene);
     return scene;
   }
 
@@ -97,7 +98,7 @@ class RandomScene {
                          chance(0.5) ? 0.0 : radius / 3,
                          radius};
       }
-      if (chance(0.2)) body.density_ramp = DensityRamp{body.density * between(0.6, 1.6), 0.02, 0.1};
+      if (chance(0.2)) body.density_ramp = DensityRamp{0.02, {{body.density * between(0.6, 1.6), 0.1}}};
       scene.bodies.push_back(body);
     }
   }
@@ -162,6 +163,15 @@ class RandomScene {
     for (Body& body : scene.bodies) {
       if (!std::holds_alternative<NeoHookean>(body.material) && chance(0.6))
         body.locking_control = LockingControl::cell_average;
+    }
+  }
+
+  /// After all else, likewise; what grows heavier also does so in two stages.
+  void draw_inertia(Scene& scene) {
+    for (Body& body : scene.bodies) {
+      if (body.density_ramp && chance(0.5))
+        body.density_ramp->stages.insert(body.density_ramp->stages.begin(), {body.density * between(0.8, 1.2), 0.03});
+      if (chance(0.3)) body.inertia = body.density * between(0.8, 1.5);
     }
   }
 

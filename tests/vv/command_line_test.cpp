@@ -119,7 +119,7 @@ TEST_F(CommandLineTest, HelpNamesEveryCommand) {
   const Answer help = ask({"--help"});
   EXPECT_EQ(help.code, 0);
   EXPECT_TRUE(help.err.empty());
-  for (const char* command : {"list", "run", "report", "digitise", "test", "bench"})
+  for (const char* command : {"list", "run", "report", "advise", "digitise", "test", "bench"})
     EXPECT_TRUE(contains(help.out, command));
   EXPECT_EQ(ask({"run", "--help"}).code, 0);
 }

@@ -172,7 +172,7 @@ TEST(EnergyBalance, IsNotDrawnUpWhereSomethingElseDoesWork) {
       [](Scene& scene) { scene.gravity.loading = RampLoading{1.0}; },
       [](Scene& scene) {
         scene.bodies.emplace_back();
-        scene.bodies[0].density_ramp = DensityRamp{2.0, 0.0, 1.0};
+        scene.bodies[0].density_ramp = DensityRamp{0.0, {{2.0, 1.0}}};
       }};
   for (const auto& disturb : disturbances) {
     Trial trial = fall();

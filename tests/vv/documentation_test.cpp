@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "tests/support/scratch_directory.hpp"
+#include "vv/advice.hpp"
 #include "vv/case_file.hpp"
 #include "vv/case_schema.hpp"
 #include "vv/field_map.hpp"
@@ -165,6 +166,21 @@ TEST(Documentation, MeasurementsFitAFooting) {
   EXPECT_EQ(definition.measurements.at(0).curve, "pressure");
 }
 
+TEST(Documentation, TradesFitAFooting) {
+  std::ifstream stream(root / "vv" / "cases" / "prandtl.json", std::ios::binary);
+  Json footing = Json::parse(std::string(std::istreambuf_iterator<char>(stream), {}));
+  for (const char* key : {"figures", "claims"}) footing.erase(key);
+  footing["sweep"] = Json::parse(R"([{ "parameter": "/scene/grid/cell_size", "values": ["20 mm", "10 mm"] },
+                                     { "parameter": "/scene/scheme", "values": ["cpgimp", "ugimp"] }])");
+  footing["trades"] = Json::parse(marked_block("trades of a footing"));
+  Json gate = footing["gates"][0];
+  gate["metric"] = "trade.1.bound";
+  gate.erase("where");
+  footing["gates"] = {gate};
+  const Case definition = parse_case(footing.dump(), "prandtl.json");
+  EXPECT_EQ(definition.trades.at(0).curve, "pressure");
+}
+
 TEST(Documentation, CurveFileIsOne) {
   const CurveFile curve = parse_curve_file(marked_block("curve file"), "plate_load.json");
   EXPECT_EQ(curve.rows.size(), 4u);
@@ -203,6 +219,7 @@ TEST(Documentation, NamesEveryKeyOfTheSchema) {
 
 TEST(Documentation, NamesEveryMetricReferenceFieldAndMetamorphosis) {
   for (const Metric& metric : metric_catalogue()) EXPECT_TRUE(names(page(), metric.name)) << metric.name;
+  for (const Metric& metric : advice_catalogue()) EXPECT_TRUE(names(page(), metric.name)) << metric.name;
   for (const std::string& reference : reference_catalogue())
     EXPECT_TRUE(names(page(), reference)) << reference;
   for (const FieldQuantity& field : field_catalogue())

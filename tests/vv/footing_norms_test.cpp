@@ -329,7 +329,7 @@ TEST(WhyNoFooting, NamesWhatIsMissing) {
        }},
       {"ground that keeps its mass",
        [](Scene& s) {
-         s.bodies[0].density_ramp = DensityRamp{1, 0, 1};
+         s.bodies[0].density_ramp = DensityRamp{0, {{1, 1}}};
        }},
       {"ground that no motion is imposed on", [](Scene& s) { s.driven_motion = DrivenMotion{}; }},
       {"gravity straight downwards, if any",

@@ -155,7 +155,7 @@ TEST(BlockFooting, NamesWhatIsMissing) {
       {{one_grows, [](Scene& s) { s.bodies[1].density_ramp.reset(); }},
        {one_grows,
         [](Scene& s) {
-          s.bodies[0].density_ramp = DensityRamp{1, 0, 1};
+          s.bodies[0].density_ramp = DensityRamp{0, {{1, 1}}};
         }},
        {"blocks without a ring",
         [](Scene& s) {

@@ -99,7 +99,7 @@ Scene machinery() {
   Scene scene = slump(MohrCoulomb{1e6, 0.3, 0.5, 2000.0, 0.1});
   scene.damping = 0.3;
   scene.bodies[0].initial_stress = UniformStress{-3e3, -5e3, -4e3, 1e3};
-  scene.bodies[0].density_ramp = DensityRamp{1500.0, 0.01, 0.03};
+  scene.bodies[0].density_ramp = DensityRamp{0.01, {{1500.0, 0.03}}};
   Body fill = scene.bodies[0];
   fill.name = "fill";
   fill.initial_stress = std::nullopt;

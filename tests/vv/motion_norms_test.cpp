@@ -434,7 +434,7 @@ TEST(WhyNoFreeFall, NamesWhatIsMissing) {
                    {"one velocity for all bodies", [](Scene& s) { s.bodies[1].velocity[0] = 0.0; }},
                    {plain, [](Scene& s) { s.bodies[1].initial_stress = UniformStress{}; }},
                    {plain, [](Scene& s) {
-                      s.bodies[1].density_ramp = DensityRamp{1.0, 0.0, 1.0};
+                      s.bodies[1].density_ramp = DensityRamp{0.0, {{1.0, 1.0}}};
                     }}});
 }
 

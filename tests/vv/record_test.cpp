@@ -392,7 +392,7 @@ TEST(ProbesOfBodies, SeeTheEnergyOfAUniformStress) {
 TEST(ProbesOfBodies, SeeTheirWeightUnderTheGravityOfTheMoment) {
   RunRequest request = flying_block();
   request.scene.gravity = {.acceleration = {0.0, -9.8}, .level = 2.0, .loading = RampLoading{0.02}};
-  request.scene.bodies[0].density_ramp = DensityRamp{3000.0, 0.0, 0.005};
+  request.scene.bodies[0].density_ramp = DensityRamp{0.0, {{3000.0, 0.005}}};
   Case definition;
   definition.probes = {probe_of("w", "weight", ProbeTarget::body, "block"),
                        probe_of("other", "weight", ProbeTarget::body, "other")};
@@ -405,7 +405,7 @@ TEST(ProbesOfBodies, SeeTheirWeightUnderTheGravityOfTheMoment) {
 TEST(ProbesOfBodies, SeeNoMassChangeInADensityRamp) {
   RunRequest request = flying_block();
   for (const double duration : {0.005, 0.02}) {  // over at the end of the run, and not
-    request.scene.bodies[0].density_ramp = DensityRamp{3000.0, 0.001, duration};
+    request.scene.bodies[0].density_ramp = DensityRamp{0.001, {{3000.0, duration}}};
     EXPECT_NEAR(simulate({}, request).relative_mass_change, 0.0, 1e-13) << duration;
   }
 }

@@ -118,9 +118,9 @@ TEST(CaseFile, reads_what_bodies_start_from) {
   const Scene scene = parsed(footing_case()).runs.front().scene;
   const Body& ground = scene.bodies[0];
   ASSERT_TRUE(ground.density_ramp);
-  EXPECT_EQ(ground.density_ramp->final_density, 2000.0);
+  EXPECT_EQ(ground.density_ramp->stages.at(0).density, 2000.0);
   EXPECT_EQ(ground.density_ramp->start, 0.1);
-  EXPECT_EQ(ground.density_ramp->duration, 1.0);
+  EXPECT_EQ(ground.density_ramp->stages.at(0).duration, 1.0);
   ASSERT_TRUE(ground.initial_stress);
   EXPECT_EQ(std::get<GeostaticStress>(*ground.initial_stress).surface, 0.5);
   EXPECT_EQ(std::get<GeostaticStress>(*ground.initial_stress).k0, 0.5);
