@@ -730,7 +730,7 @@ void set_runs_across_cases(data& page, const vv::CampaignVerdict& verdict) {
               solver_said && record.outcome.particle >= 0 ? count_markup(record.outcome.particle) : "–"},
              {"value",
               solver_said && record.outcome.particle >= 0 ? number_markup(record.outcome.value) : "–"},
-             {"expected", excuse.empty() ? "no" : chip("expected", excuse)}});
+             {"expected", excuse.empty() ? "no" : chip("expected", excuse.c_str())}});
       }
       hashes << object({{"case_id", id},
                         {"name", name},
