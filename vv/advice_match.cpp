@@ -216,8 +216,12 @@ TradeMatch match_trade(const Case& asked, const MeasuredCase& measured, const st
   const bool some_alike = std::any_of(match.problems.begin(), match.problems.end(),
                                       [](const AskedProblem& each) { return each.differences.empty(); });
   if (!problem.empty() && some_alike) keep_named(problem, scenes, match);
-  for (const AskedProblem& each : match.problems)
-    match.differences.insert(match.differences.end(), each.differences.begin(), each.differences.end());
+  for (const AskedProblem& each : match.problems) {
+    for (const Difference& difference : each.differences)
+      if (std::find(match.differences.begin(), match.differences.end(), difference) ==
+          match.differences.end())
+        match.differences.push_back(difference);
+  }
   return match;
 }
 

@@ -16,6 +16,8 @@ inline constexpr const char* problem_option = "--problem";
 /// A place at which a case is not what was measured, for a person.
 struct Difference {
   std::string pointer, here, there;
+
+  friend bool operator==(const Difference&, const Difference&) = default;
 };
 
 /// A problem of the case that advice is asked for, and the measured ones it lies among.
@@ -33,7 +35,7 @@ struct TradeMatch {
   std::vector<std::string> configured = {};  ///< places of the scene that the trade's configurations decide
   std::vector<std::string> swept = {};       ///< axes of the case whose values are problems of the trade
   std::vector<AskedProblem> problems = {};   ///< at least one
-  std::vector<Difference> differences = {};  ///< none if the trade tells of the case
+  std::vector<Difference> differences = {};  ///< each once; none if the trade tells of the case
 
   bool alike() const { return differences.empty(); }
   bool between() const;  ///< a problem of the case lies between measured ones

@@ -263,6 +263,14 @@ TEST_F(AdviseCommandTest, OtherScenesAreToldApart) {
       << answer.out;
   EXPECT_TRUE(answer.says("differs    /scene/sums_work: true here, nothing there")) << answer.out;
   EXPECT_TRUE(answer.says("\"trades\"")) << "how to get it measured";
+  change_column(
+      {{"/scene/damping", 0.7},
+       {"/sweep", Json::parse(R"([{"parameter": "/scene/gravity/level", "values": [1, 10, 50]}])")}});
+  const Answer once = advise({"--error", "0.5"});
+  const std::string difference = "differs    /scene/damping: 0.7 here, 0.8 there";
+  ASSERT_TRUE(once.says(difference)) << once.out;
+  EXPECT_EQ(once.out.find(difference), once.out.rfind(difference))
+      << "told once for all problems: " << once.out;
 }
 
 TEST_F(AdviseCommandTest, BetweenTwoProblemsTheWorseCounts) {
