@@ -32,6 +32,12 @@ class CellAverage {
   bool is_wanted() const { return is_wanted_; }
   bool is_wanted_by(std::size_t body) const { return is_wanted_by_[body] != 0; }
 
+  /// Memory of the sums [B].
+  std::int64_t bytes() const {
+    return static_cast<std::int64_t>(static_cast<std::size_t>(content_.size() + volume_.size()) *
+                                     sizeof(Real));
+  }
+
   /// Forgets the sums of some rows of cells.
   void clear(const Grid<Dim, Real>& grid, Rows rows) {
     const auto [first, count] = grid.place_of(rows);

@@ -29,6 +29,15 @@ CellBlocks<Dim, Real>::CellBlocks(const Grid<Dim, Real>& grid, int nodes_before,
 }
 
 template <int Dim, class Real>
+std::int64_t CellBlocks<Dim, Real>::bytes() const {
+  const auto of = [](const auto& table) { return table.capacity() * sizeof(table[0]); };
+  std::size_t sum = of(blocks_) + of(blocks_of_body_) + of(bands_) + of(in_cell_) + of(first_slot_of_) +
+                    of(source_) + of(in_row_) + static_cast<std::size_t>(moved_.size()) * sizeof(Real);
+  for (const Band& band : bands_) sum += of(band.blocks);
+  return static_cast<std::int64_t>(sum);
+}
+
+template <int Dim, class Real>
 std::int32_t CellBlocks<Dim, Real>::cell_of(const Grid<Dim, Real>& grid,
                                             const Particles<Dim, Real>& particles, int axis,
                                             Eigen::Index slot) const {
@@ -101,8 +110,9 @@ Eigen::Index CellBlocks<Dim, Real>::place_body(const Grid<Dim, Real>& grid,
 template <int Dim, class Real>
 void CellBlocks<Dim, Real>::move_fields(const Grid<Dim, Real>& grid, Particles<Dim, Real>& particles,
                                         Eigen::Index slots) {
+  const bool outgrown = slots > particles.slots();
   const Eigen::Index capacity =
-      slots <= particles.slots() ? particles.slots() : slots + std::max<Eigen::Index>(slots / 64, 16 * lanes);
+      outgrown ? slots + std::max<Eigen::Index>(slots / 64, 16 * lanes) : particles.slots();
   particles.for_each_field([&](Field<Real>& field, Real empty) {
     moved_.resize(capacity);
     for (Eigen::Index slot = 0; slot < slots; ++slot) {
@@ -118,6 +128,7 @@ void CellBlocks<Dim, Real>::move_fields(const Grid<Dim, Real>& grid, Particles<D
     if (from >= 0) particles.slot_of[static_cast<std::size_t>(from)] = static_cast<std::int32_t>(slot);
   }
   source_.resize(static_cast<std::size_t>(capacity), -1);
+  if (outgrown) source_.shrink_to_fit();  // a vector that grows takes up to twice what it needs
   particles.id.swap(source_);
   for (const Block& block : blocks_) {
     for (Eigen::Index k = 0; k < Eigen::Index(block.depth) * lanes; ++k) {

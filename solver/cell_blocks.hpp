@@ -52,6 +52,8 @@ class CellBlocks {
   const std::vector<Band>& bands() const { return bands_; }
   /// Rows of nodes that particles can reach until they are put in order again.
   Rows active_rows() const { return active_rows_; }
+  /// Memory of all tables, and of what `arrange` works in [B].
+  std::int64_t bytes() const;
 
  private:
   std::int32_t cell_of(const Grid<Dim, Real>& grid, const Particles<Dim, Real>& particles, int axis,

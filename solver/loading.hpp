@@ -32,6 +32,13 @@ class Loading {
   /// Whether there is any external force to scatter.
   bool has_forces() const { return scene_.driven_motion || !rows_.empty() || has_inertia_; }
 
+  /// Memory of the rows that carry loads, and of the places a driven motion starts from [B].
+  std::int64_t bytes() const {
+    std::size_t sum = start_.capacity() * sizeof(PerAxis);
+    for (const Row& row : rows_) sum += row.particles.capacity() * sizeof(row.particles[0]);
+    return static_cast<std::int64_t>(sum);
+  }
+
   /// Sets the external forces acting at `time` [s] under `gravity` [m/s^2].
   void set_forces(double time, const Vector<Dim, Real>& gravity, Particles<Dim, Real>& particles) const {
     if (scene_.driven_motion) {
@@ -66,7 +73,7 @@ class Loading {
       const ParticleRange range = particles.bodies[b];
       for (Eigen::Index slot = range.first; slot < range.last; ++slot) {
         if (particles.id[static_cast<std::size_t>(slot)] < 0) continue;
-        particles.mass[slot] = density * particles.initial_volume[slot];
+        particles.mass[slot] = density * particles.first_volume[b];
       }
     }
   }

@@ -62,6 +62,15 @@ void set_dilation(const Value& dilation, Deformation<2, Value>& deformation) {
   }
 }
 
+/// Whether a law's `update` reads the ratio of volumes; without a body of such a law, initial volumes are not
+/// stored.
+template <class Law>
+inline constexpr bool follows_volume = false;
+template <class Real>
+inline constexpr bool follows_volume<ZhangElasticLaw<Real>> = true;
+template <int Dim, class Real>
+inline constexpr bool follows_volume<NeoHookeanLaw<Dim, Real>> = true;
+
 /// Updates particles whose bodies follow one law, lanes of them at a time.
 template <int Dim, class Real>
 class StressUpdate {
@@ -83,7 +92,9 @@ class StressUpdate {
     sum_strain(deformation, slot, particles);
     const auto& increment = deformation.strain_increment;
     const Value volume = load<Value>(&particles.volume[slot]) * (1 + trace<Dim, Value>(increment));
-    stress = law.update(stress, increment, volume / load<Value>(&particles.initial_volume[slot]));
+    Value volume_ratio(1);
+    if constexpr (follows_volume<Law>) volume_ratio = volume / load<Value>(&particles.initial_volume[slot]);
+    stress = law.update(stress, increment, volume_ratio);
     // The stress before is read once more rather than kept: who sums no work has the registers for the law.
     if (sums_work_) sum_work(turned(stress_of(slot, particles), deformation), stress, increment, slot, particles);
     store(volume, &particles.volume[slot]);

@@ -35,6 +35,7 @@ void place(const Scene& scene, const Body& body, const Lattice& lattice, Particl
            Particles<Dim, Real>& particles) {
   double volume = 1.0;
   for (std::size_t axis = 0; axis < Dim; ++axis) volume *= lattice.spacing[axis];
+  particles.first_volume.push_back(static_cast<Real>(volume));
   for (Eigen::Index p = range.first; p < range.last; ++p) {
     const PerAxis& center = lattice.centers[static_cast<std::size_t>(p - range.first)];
     for (std::size_t axis = 0; axis < Dim; ++axis) {
@@ -53,6 +54,14 @@ void place(const Scene& scene, const Body& body, const Lattice& lattice, Particl
 bool has_neo_hookean(const Scene& scene) {
   return std::any_of(scene.bodies.begin(), scene.bodies.end(),
                      [](const Body& body) { return std::holds_alternative<NeoHookean>(body.material); });
+}
+
+/// Whether a law wants to know how much of its initial volume a particle has.
+bool has_law_of_volume(const Scene& scene) {
+  return std::any_of(scene.bodies.begin(), scene.bodies.end(), [](const Body& body) {
+    return std::holds_alternative<NeoHookean>(body.material) ||
+           std::holds_alternative<ZhangElastic>(body.material);
+  });
 }
 
 /// Gives the fields that only some scenes need their length.
@@ -119,7 +128,7 @@ Particles<Dim, Real> fill_bodies(const Scene& scene, bool with_domain) {
           static_cast<Real>(lattices[b].spacing[axis] / 2);
     }
   }
-  particles.initial_volume = particles.volume;
+  if (has_law_of_volume(scene)) particles.initial_volume = particles.volume;
   particles.id.resize(static_cast<std::size_t>(total));
   std::iota(particles.id.begin(), particles.id.end(), 0);
   particles.slot_of.resize(static_cast<std::size_t>(total));

@@ -40,10 +40,11 @@ struct Particles {
       external_force;            ///< beside gravity [N]; empty unless the scene has such forces
   Field<Real> mass;              ///< [kg per unit of the absent dimensions]
   Field<Real> volume;            ///< current [m^Dim]
-  Field<Real> initial_volume;    ///< [m^Dim]
+  Field<Real> initial_volume;    ///< [m^Dim]; empty unless a body's law follows the volume
   std::vector<std::int32_t> id;  ///< of the particle in a slot, in the order of filling; -1 in an empty one
   std::vector<std::int32_t> slot_of;  ///< [id]
   std::vector<ParticleRange> bodies;  ///< slots of each body
+  std::vector<Real> first_volume;     ///< [body] initial volume of each of its particles [m^Dim]
 
   Eigen::Index count() const { return static_cast<Eigen::Index>(slot_of.size()); }
   Eigen::Index slots() const { return mass.size(); }
@@ -57,7 +58,8 @@ struct Particles {
 
   /// Memory of all arrays [B].
   std::int64_t bytes() const {
-    std::size_t sum = (id.capacity() + slot_of.capacity()) * sizeof(std::int32_t);
+    std::size_t sum = (id.capacity() + slot_of.capacity()) * sizeof(std::int32_t) +
+                      bodies.capacity() * sizeof(ParticleRange) + first_volume.capacity() * sizeof(Real);
     visit_fields(*this, [&](const auto& field, Real) {
       sum += static_cast<std::size_t>(field.size()) * sizeof(Real);
     });
@@ -85,7 +87,7 @@ struct Particles {
     }
     visit(self.mass, Real(0));
     visit(self.volume, Real(1));
-    visit(self.initial_volume, Real(1));
+    if (self.initial_volume.size() > 0) visit(self.initial_volume, Real(1));
   }
 };
 

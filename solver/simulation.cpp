@@ -217,7 +217,6 @@ class Simulation::EngineOf final : public Simulation::Engine {
     fields.half_size = interleave(p.half_size, p.slot_of);
     fields.stress = interleave(p.stress, p.slot_of);
     fields.volume = to_doubles(p.volume, p.slot_of);
-    fields.initial_volume = to_doubles(p.initial_volume, p.slot_of);
     fields.mass = to_doubles(p.mass, p.slot_of);
     if (scene().sums_strain) fields.strain = interleave(p.strain, p.slot_of);
     if (scene().sums_work) fields.stress_work = interleave(p.stress_work, p.slot_of);
@@ -225,10 +224,13 @@ class Simulation::EngineOf final : public Simulation::Engine {
       fields.deformation_gradient = interleave(p.deformation_gradient, p.slot_of);
     }
     fields.body.resize(p.slot_of.size());
+    fields.initial_volume.resize(p.slot_of.size());
     for (std::size_t b = 0; b < p.bodies.size(); ++b) {
       for (Eigen::Index slot = p.bodies[b].first; slot < p.bodies[b].last; ++slot) {
         const std::int32_t id = p.id[static_cast<std::size_t>(slot)];
-        if (id >= 0) fields.body[static_cast<std::size_t>(id)] = b;
+        if (id < 0) continue;
+        fields.body[static_cast<std::size_t>(id)] = b;
+        fields.initial_volume[static_cast<std::size_t>(id)] = static_cast<double>(p.first_volume[b]);
       }
     }
     return fields;

@@ -92,7 +92,7 @@ class Simulation {
   std::int64_t particle_count() const;
   std::int64_t cell_crossings() const;  ///< particle centres that changed cell so far, summed over steps
   std::int64_t arrangements() const;    ///< how often the particles have been put in the order of their cells
-  std::int64_t memory() const;          ///< of particles and nodes [B], which is nearly all there is
+  std::int64_t memory() const;          ///< of particles, nodes and tables: all that grows with the scene [B]
   Monitor monitor() const;
   ParticleFields particles() const;
   std::vector<RigidBodyState> rigid_bodies() const;  ///< in the order of the scene

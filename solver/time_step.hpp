@@ -81,8 +81,11 @@ class TimeStepper {
   std::int64_t cell_crossings() const { return cell_crossings_; }
   /// How often the particles have been put in order.
   std::int64_t arrangements() const { return arrangements_; }
-  /// Memory of particles and nodes [B].
-  std::int64_t bytes() const { return particles_.bytes() + grid_.bytes(); }
+  /// Memory of particles, nodes and tables: of everything whose size goes with that of the scene [B].
+  std::int64_t bytes() const {
+    return particles_.bytes() + grid_.bytes() + blocks_.bytes() + average_.bytes() + loading_.bytes() +
+           static_cast<std::int64_t>(logs_.capacity() * sizeof(Log));
+  }
   /// Of the last step [N]; see Transfer::unbalanced_force.
   double unbalanced_force() const { return Transfers::unbalanced_force(particles_, grid_, empty_mass_); }
   typename Transfer<Dim, Real, scheme>::Fault find_fault() const {

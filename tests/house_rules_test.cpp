@@ -58,7 +58,7 @@ const std::map<std::string, std::vector<std::string>>& permitted_includes() {
       {"reference", {"reference"}},
       {"vv", {"solver", "reference", "vv"}},
       {"reports", {"vv", "reports"}},
-      {"benchmarks", {"solver", "vv/case_file.hpp", "vv/json_reader.hpp", "vv/revision.hpp", "vv/step_cost.hpp", "benchmarks"}},
+      {"benchmarks", {"solver", "vv/case_file.hpp", "vv/json_reader.hpp", "vv/revision.hpp", "vv/scene_reader.hpp", "vv/step_cost.hpp", "benchmarks"}},
   };
   return table;
 }

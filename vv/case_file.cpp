@@ -536,6 +536,9 @@ void read_parts(Case& read) {
       read_trades(place["trades"], read, [&](const JsonPlace& metric) { return read_metric(metric, read); });
   read.advice = read_advice(place["advice"]);
   for (const JsonPlace& gate : place["gates"].some_elements()) read.gates.push_back(read_gate(gate, read));
+  const auto asks_for_end = [](const Gate& gate) { return gate.metric == "completed" && !gate.must_fail; };
+  if (!read.trades.empty() && std::none_of(read.gates.begin(), read.gates.end(), asks_for_end))
+    place["gates"].refuse("a gate on completed that says which configurations of the trades must end well", ", none");
   if (const JsonPlace claims = place["claims"]; claims.present()) {
     for (const JsonPlace& claim : claims.elements()) read.claims.push_back(read_claim(claim, read));
   }

@@ -61,7 +61,7 @@ TimedSteps time_first_steps(const RunRequest& request, double seconds) {
 }
 
 double CaseTiming::seconds_of_repeat(std::size_t runs) {
-  constexpr double wanted = 0.15, most_of_case = 100.0;
+  constexpr double wanted = 0.15, most_of_case = 60.0;
   const auto repeats = static_cast<double>(rounds * std::max<std::size_t>(1, runs));
   return std::min(wanted, most_of_case / repeats);
 }

@@ -45,7 +45,7 @@ class CaseTiming {
   static constexpr std::size_t rounds = 5;
 
   /// Wall time that a repeat of a case with so many runs goes on for [s]: 0.15 s, and less where the whole
-  /// case would take above a hundred seconds.
+  /// case would take above a minute.
   static double seconds_of_repeat(std::size_t runs);
 
   /// The order of a round: a permutation of the numbers below `runs`, the same for ever.

@@ -1,5 +1,3 @@
-#include "reports/advice_section.hpp"
-
 #include <gtest/gtest.h>
 
 #include "reports/document.hpp"

@@ -33,7 +33,7 @@ Scene block_on_ground() {
   block.upper = {0.04, 0.26};
   block.particles_per_cell = {2, 3};
   block.density = 500.0;
-  block.density_ramp = DensityRamp{16650.0, 0.2, 1.9};
+  block.density_ramp = DensityRamp{0.2, {{16650.0, 1.9}}};
   block.material = LinearElastic{2e7, 0.3};
   scene.bodies = {ground, block};
   scene.gravity.acceleration = {0.0, -9.81};

@@ -161,7 +161,7 @@ TYPED_TEST(EveryOrder, KeepsWhatParticlesCarry) {
     }
     ASSERT_EQ(after.stress[0][to], static_cast<typename TypeParam::Real>(2 * id));
     ASSERT_EQ(after.mass[to], order.filled.mass[static_cast<Eigen::Index>(id)]);
-    ASSERT_EQ(after.initial_volume[to], order.filled.initial_volume[static_cast<Eigen::Index>(id)]);
+    ASSERT_EQ(after.volume[to], order.filled.volume[static_cast<Eigen::Index>(id)]);
     if constexpr (TypeParam::dimension == 2) {
       ASSERT_EQ(after.deformation_gradient[3][to], 1);
     }

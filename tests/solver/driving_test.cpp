@@ -547,7 +547,7 @@ ParticleFields sheared(const Material& material, double angle, int steps, double
     std::visit([&](const auto& each) { update(each, step, 0, particles); }, law);
   ParticleFields fields;
   fields.stress_work = {particles.stress_work[0][0], particles.stress_work[0][lane_count<double> - 1]};
-  fields.initial_volume = {particles.initial_volume[0]};
+  fields.initial_volume = {particles.first_volume[0]};
   fields.stress = {particles.stress[3][0]};
   return fields;
 }

@@ -64,7 +64,7 @@ inline Scene block_model(const Material& material) {
   block.lower = {0.0, 2.0};
   block.upper = {0.4, 2.2};
   block.density = 500.0;
-  block.density_ramp = DensityRamp{8000.0, 2.0, 8.0};
+  block.density_ramp = DensityRamp{2.0, {{8000.0, 8.0}}};
   block.material = LinearElastic{1e8, 0.3};
   scene.bodies.push_back(block);
   return scene;

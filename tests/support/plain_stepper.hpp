@@ -366,7 +366,9 @@ class PlainStepper {
       particles_.volume[p] *= 1 + expansion;
       SymmetricTensor<Dim, Real> old;
       for (std::size_t c = 0; c < components; ++c) old[c] = particles_.stress[c][p];
-      set_stress(p, law.update(old, strain, particles_.volume[p] / particles_.initial_volume[p]));
+      Real volume_ratio(1);
+      if constexpr (follows_volume<Law>) volume_ratio = particles_.volume[p] / particles_.initial_volume[p];
+      set_stress(p, law.update(old, strain, volume_ratio));
     }
   }
 

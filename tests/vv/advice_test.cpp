@@ -312,6 +312,7 @@ TEST_F(PutToTheTest, CaseThatWasNotRunHasNone) {
 
 TEST_F(PutToTheTest, IsInTheResults) {
   CampaignVerdict campaign;
+  testing_.definition.runs.resize(1);
   testing_.definition.text = Json::parse(R"({"scene": {"scheme": "mpm"}, "sweep": [1], "gates": [2]})");
   campaign.cases = {judged()};
   const Json plain = to_json(campaign)["cases"][0];

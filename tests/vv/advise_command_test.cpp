@@ -570,6 +570,11 @@ TEST_F(AdviseCommandTest, GatesOnAdviceAreOfTheCaseAsAWhole) {
                       {"at_least", 1},
                       {"basis", "requirement"},
                       {"reason", "promised"}};
+  text["gates"].push_back({{"id", "ends"},
+                           {"metric", "completed"},
+                           {"at_least", 1},
+                           {"basis", "requirement"},
+                           {"reason", "asked for"}});
   EXPECT_EQ(parse_case(text.dump(), "testing.json").gates[0].metric, "advice.kept");
   const auto refused_at = [&](const std::string& pointer, const Json& changed) {
     try {

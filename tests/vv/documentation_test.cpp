@@ -176,7 +176,9 @@ TEST(Documentation, TradesFitAFooting) {
   Json gate = footing["gates"][0];
   gate["metric"] = "trade.1.bound";
   gate.erase("where");
-  footing["gates"] = {gate};
+  Json ending = gate;
+  ending.update({{"id", "ends"}, {"metric", "completed"}});
+  footing["gates"] = {gate, ending};
   const Case definition = parse_case(footing.dump(), "prandtl.json");
   EXPECT_EQ(definition.trades.at(0).curve, "pressure");
 }

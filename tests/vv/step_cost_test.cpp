@@ -104,7 +104,8 @@ TEST(StepCost, means_of_cells_take_passes_of_their_own) {
   // Cleared twice, summed into twice, read twice: 4 + 8 + 4 scalars of a cell, and the velocities once more.
   // Particles: place, mass, volume and two stresses; place, half size, mass and volume.
   EXPECT_DOUBLE_EQ(usl.bytes, 8 * (6 + 6 + (4 + 8 + 4 + 2) / 4.0));
-  EXPECT_GT(usl.operations, 0);
+  // The mean stress 5, sharing it 7, the mean dilation as much as a gather and 5 more, sharing it 7.
+  EXPECT_DOUBLE_EQ(usl.operations, 5 + 7 + (78 + 80 + 96 + 6 + 5) + 7);
   step.order = UpdateOrder::musl;
   EXPECT_DOUBLE_EQ(added_by(average, step).bytes, usl.bytes);
   // Stress and force part: the force reads places, half sizes, masses, volumes and stresses again.

@@ -167,7 +167,7 @@ TEST(VerificationOfTheColumn, CarriesOverLoadsRampsStatesAndPlates) {
        }},
       {"density ramp",
        [](Scene& scene) {
-         scene.bodies[1].density_ramp = DensityRamp{2500.0, 0.01, 0.02};
+         scene.bodies[1].density_ramp = DensityRamp{0.01, {{2500.0, 0.02}}};
        }},
       {"velocity",
        [](Scene& scene) {

@@ -141,8 +141,8 @@ TEST(CaseTiming, orders_are_permutations) {
 TEST_F(TimingTest, a_repeat_goes_on_for_150_ms_or_less_of_very_many_runs) {
   timed();
   for (const double seconds : clock.seconds) EXPECT_EQ(seconds, 0.15);
-  EXPECT_EQ(CaseTiming::seconds_of_repeat(100), 0.15);
-  EXPECT_DOUBLE_EQ(CaseTiming::seconds_of_repeat(400), 0.05);
+  EXPECT_EQ(CaseTiming::seconds_of_repeat(80), 0.15);
+  EXPECT_DOUBLE_EQ(CaseTiming::seconds_of_repeat(240), 0.05);
 }
 
 // ---- what is made of it ----
