@@ -101,6 +101,50 @@ TEST(TradeReader, reads_advice) {
   EXPECT_TRUE(parsed(valid_case()).trades.empty());
 }
 
+/// The case above with figures of one of its trades and of all.
+Json figured_case() {
+  Json text = traded_case();
+  text["figures"] = Json::parse(
+      R"([{ "id": "one", "kind": "trade", "trade": "stress", "caption": "Error over cost." },
+          { "id": "all", "kind": "trade", "caption": "Error over cost." }])");
+  return text;
+}
+
+TEST(TradeReader, reads_figures_of_trades) {
+  const Json text = figured_case();
+  EXPECT_FALSE(schema_violation(text));
+  const Case read = parsed(text);
+  ASSERT_EQ(read.figures.size(), 2u);
+  EXPECT_EQ(read.figures[0].kind, "trade");
+  EXPECT_EQ(read.figures[0].trade, "stress");
+  EXPECT_EQ(read.figures[1].trade, "");
+}
+
+TEST(MalformedTrade, is_no_figure_of_another_kind_and_none_without_trades) {
+  Json text = figured_case();
+  text["figures"][0]["trade"] = "strain";
+  expect_message(refusal_of(text.dump()), "column.json", "/figures/0/trade", "\"stress\"", "\"strain\"");
+
+  for (const char* key : {"panels", "series", "metrics", "quantity"}) {
+    text = figured_case();
+    text["figures"][0][key] = scheme;
+    EXPECT_NE(refusal_of(text.dump()), "") << key;
+    EXPECT_TRUE(schema_violation(text)) << key;
+  }
+  text = figured_case();
+  text["figures"][0]["kind"] = "bars";
+  text["figures"][0]["metrics"] = {"hencky.stress.l2"};
+  EXPECT_NE(refusal_of(text.dump()), "");
+  EXPECT_TRUE(schema_violation(text));
+
+  text = figured_case();
+  text.erase("trades");
+  text["gates"].erase(text["gates"].size() - 1);
+  EXPECT_FALSE(schema_violation(text)) << "the schema cannot tell";
+  expect_message(refusal_of(text.dump()), "column.json", "/figures/0/kind", "of which it has none",
+                 "\"trade\"");
+}
+
 TEST(TradeReader, makes_metrics_for_gates_and_figures) {
   const Case read = parsed(traded_case());
   EXPECT_EQ(trade_metric_names(read.trades),
