@@ -39,6 +39,8 @@ Json traded_case() {
   text["trades"] = {metric_trade(), curve_trade()};
   text["advice"] = {{"of", "another"}, {"asked", {0.01, 0.001}}};
   text["gates"].push_back(Json::parse(
+      R"({ "id": "ends", "metric": "completed", "at_least": 1, "basis": "requirement", "reason": "Asked." })"));
+  text["gates"].push_back(Json::parse(
       R"({ "id": "promise", "metric": "trade.2.bound", "at_most": 1, "basis": "fit", "reason": "Seen." })"));
   return text;
 }
@@ -54,6 +56,19 @@ TEST(TradeReader, reads_the_trade_of_a_metric) {
   EXPECT_EQ(trade.family, scheme);
   EXPECT_EQ(trade.asked, (std::vector<double>{0.1, 0.01}));
   EXPECT_TRUE(trade.finest.empty());
+}
+
+TEST(TradeReader, asks_which_configurations_must_end_well) {
+  Json text = traded_case();
+  Json& gates = text["gates"];
+  for (std::size_t k = gates.size(); k-- > 0;)
+    if (gates[k]["metric"] == "completed") gates.erase(k);
+  try {
+    parsed(text);
+    FAIL() << "nothing was refused";
+  } catch (const CaseError& error) {
+    EXPECT_NE(std::string(error.what()).find("/gates: expected a gate on completed"), std::string::npos) << error.what();
+  }
 }
 
 TEST(TradeReader, reads_the_trade_of_a_history_over_time) {
@@ -123,7 +138,7 @@ TEST(TradeReader, reads_figures_of_trades) {
 TEST(MalformedTrade, is_no_figure_of_another_kind_and_none_without_trades) {
   Json text = figured_case();
   text["figures"][0]["trade"] = "strain";
-  expect_message(refusal_of(text.dump()), "column.json", "/figures/0/trade", "\"stress\"", "\"strain\"");
+  expect_message(refusal_of(text.dump()), "column.json", "/figures/0/trade", "one of stress", "\"strain\"");
 
   for (const char* key : {"panels", "series", "metrics", "quantity"}) {
     text = figured_case();

@@ -240,7 +240,7 @@ Record record_of(const Json& scene) {
 Json outcome_of(const Record& record) {
   Json json = to_json(record);
   json.erase("input_hash");
-  json["cost"].erase("wall_seconds");
+  for (const char* of_time : {"wall_seconds", "early_seconds", "early_steps"}) json["cost"].erase(of_time);
   return json;
 }
 
