@@ -308,7 +308,7 @@ TEST(MalformedTrade, is_refused_in_one_line_that_names_place_expected_and_found)
        "a half-width above zero", "\"0 s\"", true},
 
       // Gates on what trades measure.
-      {R"([{"op": "replace", "path": "/gates/3/metric", "value": "trade.3.bound"}])", "/gates/3/metric",
+      {R"([{"op": "replace", "path": "/gates/4/metric", "value": "trade.3.bound"}])", "/gates/4/metric",
        "one of", "\"trade.3.bound\" (did you mean", false},
 
       // Advice.
