@@ -150,6 +150,18 @@ ChoiceEffect effect_of(const std::vector<const vv::TradeVerdict*>& problems, con
   return effect;
 }
 
+bool is_in_float(const vv::TradePoint& point, const vv::Case& definition) {
+  return definition.runs.at(point.run).scene.precision == Precision::float32;
+}
+
+/// What the sweep changes in a point's run, but for the precision.
+std::vector<vv::Json> changes_without_precision(const vv::TradePoint& point, const vv::Case& definition) {
+  std::vector<vv::Json> changes = definition.runs.at(point.run).changes;
+  for (vv::Json& change : changes)
+    if (change.contains("set")) change["set"].erase(precision_axis);
+  return changes;
+}
+
 }  // namespace
 
 std::optional<double> price_of(const vv::TradePoint& point, Price price) {
@@ -285,21 +297,23 @@ std::vector<ChoiceEffect> effects_of(const std::vector<const vv::TradeVerdict*>&
   return effects;
 }
 
-std::optional<Rounding> rounding_of(const vv::TradeVerdict& trade) {
+std::optional<Rounding> rounding_of(const vv::TradeVerdict& trade, const vv::Case& definition) {
   Rounding rounding;
   for (const vv::TradePoint& point : trade.points) {
-    const vv::Json* precision = value_of(point.configuration, precision_axis);
-    if (failed(point) || !(point.error > 0.0) || !precision || *precision != "double") continue;
-    const vv::TradePoint* other = partner_of(trade, point, precision_axis, "float");
-    if (!other) continue;
-    ++rounding.pairs;
-    if (failed(*other)) {
-      ++rounding.failed;
-      continue;
+    if (failed(point) || !(point.error > 0.0) || is_in_float(point, definition)) continue;
+    for (const vv::TradePoint& other : trade.points) {
+      if (!is_in_float(other, definition) ||
+          changes_without_precision(other, definition) != changes_without_precision(point, definition))
+        continue;
+      ++rounding.pairs;
+      if (failed(other)) {
+        ++rounding.failed;
+        continue;
+      }
+      const double share = std::abs(other.error - point.error) / point.error;
+      rounding.worst = std::max(rounding.worst, share);
+      rounding.enough += share <= Rounding::negligible;
     }
-    const double share = std::abs(other->error - point.error) / point.error;
-    rounding.worst = std::max(rounding.worst, share);
-    rounding.enough += share <= Rounding::negligible;
   }
   return rounding.pairs > 0 ? std::optional(rounding) : std::nullopt;
 }

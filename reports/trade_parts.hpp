@@ -82,7 +82,8 @@ struct Rounding {
   double worst = 0.0;      ///< largest |error of float − error of double| / error of double [-]
 };
 
-/// Nothing without such a pair.
-std::optional<Rounding> rounding_of(const vv::TradeVerdict& trade);
+/// Of the pairs among the points whose runs, as the case describes them, differ in their precision alone: by an axis of
+/// it, or by a variant that sets it. Nothing without such a pair.
+std::optional<Rounding> rounding_of(const vv::TradeVerdict& trade, const vv::Case& definition);
 
 }  // namespace mpm::reports

@@ -217,8 +217,8 @@ data cost_cells(const vv::TradeVerdict& trade, const std::vector<double>& asked)
 }
 
 /// Whether float is enough, and by how much.
-std::string rounding_cell(const vv::TradeVerdict& trade) {
-  const std::optional<Rounding> rounding = rounding_of(trade);
+std::string rounding_cell(const vv::TradeVerdict& trade, const vv::Case& definition) {
+  const std::optional<Rounding> rounding = rounding_of(trade, definition);
   if (!rounding) return "not measured";
   const std::string pairs = plural(rounding->pairs, "pair");
   const std::string most =
@@ -242,7 +242,7 @@ data overview_row(const vv::CaseVerdict& verdict, const vv::TradeVerdict& trade)
                      {"prices", range_of(
                                     trade, [price](const vv::TradePoint& p) { return paid(p, price); },
                                     [price](double value) { return price_markup(value, price); })},
-                     {"rounding", rounding_cell(trade)}});
+                     {"rounding", rounding_cell(trade, verdict.definition)}});
   row.set("costs", cost_cells(trade, asked_of(verdict, trade)));
   return row;
 }

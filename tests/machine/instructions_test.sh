@@ -2,10 +2,14 @@
 # Instructions a particle-step takes, counted by valgrind: where wall time is too noisy to gate on, these repeat to
 # the digit. The counts in the table are this program's own earlier ones; a change beyond the tolerance, for better or
 # worse, asks for a new table in the same commit. They hold for the compiler named in the table only.
+#
+# Rows whose law is followed by +FEATURE have that feature; the others have none. What a feature that is left out costs
+# cannot be compared with a step that does not know the feature, for there is none: it is compared with the table, and
+# may move a step without features by no more than 2 %. So may every feature that is added later.
 # usage: instructions_test.sh PROBE TABLE COMPILER [--write]
 set -eu
 probe=$1 table=$2 compiler=$3 write=${4:-}
-tolerance=4  # percent: what inlining moves when unrelated code of the same file changes
+tolerance_without=2 tolerance_with=4  # percent; inlining alone moves 4 when unrelated code of the same file changes
 few=4 many=24 particles=552  # of the probe's footing
 
 count() {
@@ -30,6 +34,7 @@ while read -r scheme order law expected; do
     echo "$scheme $order $law $found"
     continue
   fi
+  case $law in *+*) tolerance=$tolerance_with ;; *) tolerance=$tolerance_without ;; esac
   change=$(((found - expected) * 100))
   verdict=
   if [ $change -gt $((tolerance * expected)) ] || [ $change -lt $((-tolerance * expected)) ]; then

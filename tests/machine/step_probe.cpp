@@ -6,6 +6,7 @@
 #include <fstream>
 #include <iostream>
 #include <numbers>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -20,8 +21,10 @@ namespace {
 using namespace mpm;
 
 constexpr const char* usage =
-    "usage: step_probe SCHEME ORDER LAW STEPS [FILE TOLERANCE]\n"
+    "usage: step_probe SCHEME ORDER LAW[+FEATURE...] STEPS [FILE TOLERANCE]\n"
     "  SCHEME mpm ugimp cpgimp; ORDER usl usf musl; LAW elastic mohr_coulomb\n"
+    "  FEATURE damping jaumann strain_sums work_sums locking_control surface_load density_ramp rigid_body "
+    "float\n"
     "  without FILE prints the final state; with it compares the state with FILE's\n";
 
 [[noreturn]] void fail(const std::string& message) {
@@ -73,6 +76,33 @@ Scene footing(Scheme scheme, UpdateOrder order, bool yields) {
   return scene;
 }
 
+/// Gives the scene something that it does without otherwise.
+void add(const std::string& feature, Scene& scene) {
+  const double h = scene.cell_size;
+  if (feature == "damping") {
+    scene.damping = 0.5;
+  } else if (feature == "jaumann") {
+    scene.objectivity = Objectivity::jaumann;
+  } else if (feature == "strain_sums") {
+    scene.sums_strain = true;
+  } else if (feature == "work_sums") {
+    scene.sums_work = true;
+  } else if (feature == "locking_control") {
+    scene.bodies[0].locking_control = LockingControl::cell_average;
+  } else if (feature == "surface_load") {
+    scene.surface_loads = {{"ground", 1, 1, 3 * h, 8 * h, {0.0, -100.0}, 0.0}};
+  } else if (feature == "density_ramp") {
+    scene.bodies[1].density_ramp = DensityRamp{.start = 0.0, .stages = {{8000.0, 1.0}}};
+  } else if (feature == "rigid_body") {
+    scene.rigid_bodies = {
+        {.name = "plate", .lower = {8 * h, 10 * h}, .upper = {10 * h, 11 * h}, .velocity = {0.0, -0.1}}};
+  } else if (feature == "float") {
+    scene.precision = Precision::float32;
+  } else {
+    fail("unknown feature '" + feature + "'");
+  }
+}
+
 /// Values of a kind, and their largest size.
 struct Values {
   const char* name;
@@ -114,8 +144,12 @@ int main(int argc, char** argv) {
       chosen<Scheme>(argv[1], {{"mpm", Scheme::mpm}, {"ugimp", Scheme::ugimp}, {"cpgimp", Scheme::cpgimp}});
   const auto order = chosen<UpdateOrder>(
       argv[2], {{"usl", UpdateOrder::usl}, {"usf", UpdateOrder::usf}, {"musl", UpdateOrder::musl}});
-  const bool yields = chosen<bool>(argv[3], {{"elastic", false}, {"mohr_coulomb", true}});
-  Simulation simulation(footing(scheme, order, yields));
+  std::istringstream words(argv[3]);
+  std::string word;
+  std::getline(words, word, '+');
+  Scene scene = footing(scheme, order, chosen<bool>(word, {{"elastic", false}, {"mohr_coulomb", true}}));
+  while (std::getline(words, word, '+')) add(word, scene);
+  Simulation simulation(scene);
   for (long step = std::atol(argv[4]); step > 0; --step) {
     if (!simulation.advance()) fail(std::string("the run ended: ") + name_of(simulation.outcome().ending));
   }

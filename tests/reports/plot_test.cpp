@@ -314,6 +314,36 @@ TEST(Plot, ErrorBarsReachAsFarAsTheySay) {
   EXPECT_EQ(picture.layout.panels[0].points.size(), 2U) << "ends of bars are no points";
 }
 
+TEST(Plot, LevelErrorBarsReachAsFarAsTheySay) {
+  Plot plot = unit_square();
+  Look look;
+  look.marker = MarkerShape::circle;
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  plot.panels[0].curves = {{"measured", look, {0.47, 0.47}, {0.33, 0.73}, 0, {}, {0.27, none}, {0.77, none}}};
+  const Picture picture = draw(plot);
+  const auto pixels = picture.canvas.pixels();
+  const Rectangle& frame = picture.layout.panels[0].frame;
+  const auto dark = [&](double x, double y) {
+    return darkness(picture.canvas, pixels, place_in(frame, x, y));
+  };
+  for (const double x : {0.29, 0.36, 0.63, 0.74}) EXPECT_GT(dark(x, 0.33), 0.5) << x;
+  for (const double x : {0.22, 0.83}) EXPECT_LT(dark(x, 0.33), 0.2) << x;
+  for (const double x : {0.36, 0.63}) EXPECT_LT(dark(x, 0.73), 0.2) << "a bar without ends is not drawn";
+}
+
+TEST(Plot, NamesALabelOnceInTheNoteOnPointsBeyondTheAxes) {
+  Plot plot = unit_square();
+  Look look;
+  look.marker = MarkerShape::circle;
+  const std::string label = "a curve whose name is so long that it fills a line";
+  plot.panels[0].curves = {{label, look, {0.5, 3.0}, {2.0, 0.5}, 0}};
+  const Picture once = draw(plot);
+  plot.panels[0].curves = {{label, look, {0.5}, {2.0}, 0}, {label, look, {3.0}, {0.5}, 0}};
+  const Picture twice = draw(plot);
+  EXPECT_EQ(twice.layout.panels[0].outside, 2);
+  EXPECT_EQ(twice.canvas.height(), once.canvas.height());
+}
+
 TEST(Plot, PanelsOfAStackStandOneBelowTheOther) {
   Plot plot;
   plot.columns = 2;

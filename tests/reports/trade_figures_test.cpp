@@ -114,6 +114,23 @@ TEST(TradeFigures, LeaveAFewFarPointsBeyondTheAxes) {
   EXPECT_GE(count(html, "M5 0L-4 5V-5Z"), 1u);
 }
 
+TEST(TradeFigures, LetNoWrongErrorStretchTheAxis) {
+  vv::CaseVerdict verdict = support::demo_trade_column();
+  for (std::size_t k = 0; k < 32; ++k) verdict.trades[0].points[k].error = 20.0 * std::pow(1.5, k);
+  const TradeChart chart = trade_chart_of(verdict, verdict.definition.figures.front());
+  EXPECT_LE(chart.panels[0].y.range.upper, 1.0) << "a third of all errors is above 1000 %";
+}
+
+TEST(TradeFigures, KeepMarksClearOfTheRowOfFailures) {
+  vv::CaseVerdict verdict = support::demo_trade_column();
+  std::vector<vv::TradePoint>& points = verdict.trades[1].points;
+  points.back().error = 0.7;
+  const TradeChart chart = trade_chart_of(verdict, verdict.definition.figures.front());
+  ASSERT_FALSE(chart.panels[2].failures.empty());
+  EXPECT_GT(chart.panels[2].failure_level, 1.2 * 0.7);
+  EXPECT_LT(chart.panels[2].failure_level, chart.panels[2].y.range.upper);
+}
+
 TEST(TradeFigures, MakeFinerCellsSmaller) {
   const TradeChart chart = column_chart();
   for (std::size_t k = 1; k < chart.cell_sizes.size(); ++k)
@@ -183,6 +200,7 @@ TEST(TradeFigures, DrawTheUncertaintyAndRepeatsThatSpreadBeyondTheMark) {
   EXPECT_EQ(bars_of(plot.panels[0]), (std::pair{8, 8}));
   EXPECT_EQ(bars_of(plot.panels[1]), (std::pair{0, 8})) << "what is counted has no spread";
   EXPECT_EQ(draw(plot).layout.panels.size(), 2u);
+  EXPECT_EQ(count(trade_html(verdict, request), "class=\"bar\" d=\"M-"), 8u) << "from left of the mark";
 }
 
 TEST(TradeFigures, SayThatAProblemWasNotTimed) {

@@ -112,26 +112,39 @@ TEST(TradeParts, DoesNotCompareErrorsThatCannotBeToldApart) {
 }
 
 TEST(TradeParts, JudgesFloatByTheErrorOfDouble) {
-  const auto with = [](const char* precision, const std::string& size, double error) {
-    vv::TradePoint p = point("musl", size, error, 1.0);
-    p.configuration.emplace_back(precision_pointer, precision);
-    return p;
+  vv::Case definition;
+  std::vector<vv::TradePoint> points;
+  /// A run on cells of a size by a method whose variant may set the precision.
+  const auto add = [&](bool in_float, const std::string& size, vv::Json method, double error) {
+    if (in_float) method[precision_pointer] = "float";
+    vv::RunRequest request;
+    request.scene.precision = in_float ? Precision::float32 : Precision::float64;
+    request.changes = {vv::Json{{"set", {{"/scene/grid/cell_size", size}}}}, vv::Json{{"set", method}}};
+    definition.runs.push_back(request);
+    points.push_back(point("musl", size, error, 1.0));
+    points.back().run = definition.runs.size() - 1;
   };
-  vv::TradeVerdict trade =
-      trade_of({with("double", "8 mm", 0.1), with("float", "8 mm", 0.101), with("double", "4 mm", 0.02),
-                with("float", "4 mm", 0.015), with("double", "2 mm", 0.01)});
-  std::optional<Rounding> rounding = rounding_of(trade);
+  const vv::Json none = vv::Json::object(), usl = {{"/scene/update_order", "usl"}};
+  add(false, "8 mm", none, 0.1);
+  add(true, "8 mm", none, 0.101);
+  add(false, "4 mm", none, 0.02);
+  add(true, "4 mm", none, 0.015);
+  add(false, "2 mm", none, 0.01);
+  add(true, "2 mm", usl, 0.5);
+  vv::TradeVerdict trade = trade_of(points);
+  std::optional<Rounding> rounding = rounding_of(trade, definition);
   ASSERT_TRUE(rounding);
-  EXPECT_EQ(rounding->pairs, 2u) << "the last has no partner";
+  EXPECT_EQ(rounding->pairs, 2u) << "on the finest cells float differs in its order too";
   EXPECT_EQ(rounding->enough, 1u);
   EXPECT_NEAR(rounding->worst, 0.25, 1e-12);
   EXPECT_EQ(rounding->failed, 0u);
   trade.points[3].failure = "a value is not finite";
-  rounding = rounding_of(trade);
+  rounding = rounding_of(trade, definition);
   EXPECT_EQ(rounding->pairs, 2u);
   EXPECT_EQ(rounding->failed, 1u);
   EXPECT_NEAR(rounding->worst, 0.01, 1e-12);
-  EXPECT_FALSE(rounding_of(two_orders()));
+  trade.points.resize(1);
+  EXPECT_FALSE(rounding_of(trade, definition));
 }
 
 TEST(TradeParts, PaysInWhatWasMeasuredOrCounted) {

@@ -124,6 +124,25 @@ TEST(TradeSection, TellsHowMuchCheaperThanTheNextBetter) {
   EXPECT_TRUE(has(row_with(front, "= 5 mm"), "<td class=\"n\">–</td>")) << front;
 }
 
+TEST(TradeSection, AdvisesByTimeWhereThereIsAny) {
+  vv::CampaignVerdict verdict = campaign();
+  verdict.cases.erase(verdict.cases.begin());
+  vv::TradeVerdict& trade = verdict.cases[0].trades[0];
+  trade.points.resize(3);
+  for (std::size_t k = 0; k < 3; ++k) {
+    trade.points[k].of_reference = false;
+    trade.points[k].error = 0.03;
+    const double seconds = k == 1 ? 1.0 : 5.0;
+    trade.points[k].timing = vv::Timing{seconds, seconds, seconds, 5, true};
+    trade.points[k].work.bytes = k == 2 ? 1e9 : 5e9;
+  }
+  EXPECT_TRUE(has(row_with(page(verdict), "<th class=\"n\">10\u00a0%</th>"), "<td><i>h</i> = 10 mm</td>"));
+  for (vv::TradePoint& point : trade.points) point.timing.reset();
+  const std::string row = row_with(page(verdict), "<th class=\"n\">10\u00a0%</th>");
+  EXPECT_TRUE(has(row, "<td><i>h</i> = 5 mm</td>")) << row;
+  EXPECT_TRUE(has(row, "<td class=\"n\">1\u00a0GB</td>")) << row;
+}
+
 TEST(TradeSection, FoldsFailuresWithTheirReasons) {
   const std::string html = page(campaign());
   EXPECT_TRUE(has(html, "<summary>20 configurations that failed, and why</summary>"));

@@ -105,6 +105,17 @@ inline vv::FigureRequest trade_figure(const std::string& title) {
   return figure;
 }
 
+/// The run that a point is of, each parameter an axis that sets it.
+inline vv::RunRequest request_of(const vv::RunVerdict& run) {
+  vv::RunRequest request;
+  request.parameters = run.parameters;
+  for (const auto& [name, value] : run.parameters) {
+    request.changes.push_back({{"set", {{name, value}}}});
+    if (name == "/scene/precision" && value == "float") request.scene.precision = Precision::float32;
+  }
+  return request;
+}
+
 }  // namespace demo
 
 /// A column at two levels of gravity: 96 configurations each, errors against an exact solution; at 50G half
@@ -136,6 +147,7 @@ inline vv::CaseVerdict demo_trade_column() {
             for (const char* precision : {"double", "float"}) {
               trade.points.push_back(column_point({scheme, size, order, step, precision}, level, number++));
               verdict.runs.push_back(run_of(trade.points.back(), trade.problem));
+              verdict.definition.runs.push_back(request_of(verdict.runs.back()));
             }
     mark_fronts(trade);
     verdict.trades.push_back(trade);
@@ -182,6 +194,7 @@ inline vv::CaseVerdict demo_trade_footing() {
       point.of_reference = size < 6.0;
       trade.points.push_back(point);
       verdict.runs.push_back(run_of(point, {}));
+      verdict.definition.runs.push_back(request_of(verdict.runs.back()));
     }
   mark_fronts(trade);
   verdict.trades = {trade};

@@ -550,8 +550,11 @@ TEST(PotentialEnergy, IsWhatTheWeightHasGainedInFullGravity) {
   ParticleFields fields;
   fields.dimension = 2;
   fields.mass = {1.0, 4.0};
+  fields.body = {0, 0};
   fields.displacement = {0.5, 0.0, 0.0, -0.25};
   EXPECT_DOUBLE_EQ(potential_energy(scene, fields), -3.0 * (1.0 * 2.0 * 0.5 + 4.0 * 10.0 * 0.25));
+  scene.bodies[0].inertia = 2 * scene.bodies[0].density;  // half of the mass has weight
+  EXPECT_DOUBLE_EQ(potential_energy(scene, fields), -1.5 * (1.0 * 2.0 * 0.5 + 4.0 * 10.0 * 0.25));
 }
 
 TEST(StressWork, IsSummedOverTheParticlesThatKeepIt) {

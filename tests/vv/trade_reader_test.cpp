@@ -39,6 +39,8 @@ Json traded_case() {
   text["trades"] = {metric_trade(), curve_trade()};
   text["advice"] = {{"of", "another"}, {"asked", {0.01, 0.001}}};
   text["gates"].push_back(Json::parse(
+      R"({ "id": "ends", "metric": "completed", "at_least": 1, "basis": "requirement", "reason": "Asked." })"));
+  text["gates"].push_back(Json::parse(
       R"({ "id": "promise", "metric": "trade.2.bound", "at_most": 1, "basis": "fit", "reason": "Seen." })"));
   return text;
 }
@@ -54,6 +56,19 @@ TEST(TradeReader, reads_the_trade_of_a_metric) {
   EXPECT_EQ(trade.family, scheme);
   EXPECT_EQ(trade.asked, (std::vector<double>{0.1, 0.01}));
   EXPECT_TRUE(trade.finest.empty());
+}
+
+TEST(TradeReader, asks_which_configurations_must_end_well) {
+  Json text = traded_case();
+  Json& gates = text["gates"];
+  for (std::size_t k = gates.size(); k-- > 0;)
+    if (gates[k]["metric"] == "completed") gates.erase(k);
+  try {
+    parsed(text);
+    FAIL() << "nothing was refused";
+  } catch (const CaseError& error) {
+    EXPECT_NE(std::string(error.what()).find("/gates: expected a gate on completed"), std::string::npos) << error.what();
+  }
 }
 
 TEST(TradeReader, reads_the_trade_of_a_history_over_time) {
@@ -99,6 +114,50 @@ TEST(TradeReader, reads_advice) {
   EXPECT_EQ(read.advice->asked, (std::vector<double>{0.01, 0.001}));
   EXPECT_FALSE(parsed(valid_case()).advice);
   EXPECT_TRUE(parsed(valid_case()).trades.empty());
+}
+
+/// The case above with figures of one of its trades and of all.
+Json figured_case() {
+  Json text = traded_case();
+  text["figures"] = Json::parse(
+      R"([{ "id": "one", "kind": "trade", "trade": "stress", "caption": "Error over cost." },
+          { "id": "all", "kind": "trade", "caption": "Error over cost." }])");
+  return text;
+}
+
+TEST(TradeReader, reads_figures_of_trades) {
+  const Json text = figured_case();
+  EXPECT_FALSE(schema_violation(text));
+  const Case read = parsed(text);
+  ASSERT_EQ(read.figures.size(), 2u);
+  EXPECT_EQ(read.figures[0].kind, "trade");
+  EXPECT_EQ(read.figures[0].trade, "stress");
+  EXPECT_EQ(read.figures[1].trade, "");
+}
+
+TEST(MalformedTrade, is_no_figure_of_another_kind_and_none_without_trades) {
+  Json text = figured_case();
+  text["figures"][0]["trade"] = "strain";
+  expect_message(refusal_of(text.dump()), "column.json", "/figures/0/trade", "one of stress", "\"strain\"");
+
+  for (const char* key : {"panels", "series", "metrics", "quantity"}) {
+    text = figured_case();
+    text["figures"][0][key] = scheme;
+    EXPECT_NE(refusal_of(text.dump()), "") << key;
+    EXPECT_TRUE(schema_violation(text)) << key;
+  }
+  text = figured_case();
+  text["figures"][0]["kind"] = "bars";
+  text["figures"][0]["metrics"] = {"hencky.stress.l2"};
+  EXPECT_NE(refusal_of(text.dump()), "");
+  EXPECT_TRUE(schema_violation(text));
+
+  text = figured_case();
+  text.erase("trades");
+  text["gates"].erase(text["gates"].size() - 1);
+  EXPECT_FALSE(schema_violation(text)) << "the schema cannot tell";
+  expect_message(refusal_of(text.dump()), "column.json", "/figures/0/kind", "of which it has none",
+                 "\"trade\"");
 }
 
 TEST(TradeReader, makes_metrics_for_gates_and_figures) {
@@ -249,7 +308,7 @@ TEST(MalformedTrade, is_refused_in_one_line_that_names_place_expected_and_found)
        "a half-width above zero", "\"0 s\"", true},
 
       // Gates on what trades measure.
-      {R"([{"op": "replace", "path": "/gates/3/metric", "value": "trade.3.bound"}])", "/gates/3/metric",
+      {R"([{"op": "replace", "path": "/gates/4/metric", "value": "trade.3.bound"}])", "/gates/4/metric",
        "one of", "\"trade.3.bound\" (did you mean", false},
 
       // Advice.
