@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -106,7 +107,8 @@ struct Ring {
 /// An axis-aligned block of particles, filled regularly with particles of equal size.
 struct Body {
   std::string name;
-  PerAxis lower{}, upper{};  ///< corners [m]; whole multiples of the particle spacing
+  PerAxis lower{}, upper{};  ///< corners [m]; whole multiples of the particle spacing above the grid's lower corner
+  bool anywhere = false;     ///< the corners may lie anywhere in the grid; their distance is still a whole multiple
   std::optional<Ring> ring;  ///< keeps only the part of the block inside it; two dimensions only
   std::array<int, max_dimension> particles_per_cell{1, 1};  ///< per axis, >= 1
   double density = 0.0;                                     ///< initial mass density [kg/m^3], > 0
@@ -232,6 +234,19 @@ struct Scene {
   /// Largest half size of a particle of cpgimp along any axis, in cells, above 0 and at most 1: a domain that would
   /// grow beyond stays as large. Without one, such a run ends with domain_too_large.
   std::optional<double> domain_limit;
+  /// Sums that go over all steps (displacement, position, velocity, stress of elastic laws) are compensated
+  /// [Kahan65]: the part of each increment that rounding cuts off is kept and added with the next.
+  bool compensated_sums = false;
+  /// Fills each body in a random order of its particles, the same for the same number; no order is another answer but
+  /// for rounding.
+  std::optional<std::uint64_t> shuffle;
+  /// Of USL: for the strain, a node of less mass than this fraction of its share of full cells is as slow as one that
+  /// has it, see `strain_velocity`; in (0, 1]. Without one, nodes at a free surface strain the last particle by
+  /// accelerations that it never feels.
+  std::optional<double> light_nodes;
+  /// Whether the run is watched for energy that comes from nowhere. Only a measurement of what that costs has a reason
+  /// to switch it off.
+  bool watched = true;
   std::variant<GivenTimeStep, StableFraction> time_step = StableFraction{0.2};
   Termination termination = AtTime{1.0};
 };

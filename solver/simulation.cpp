@@ -84,6 +84,8 @@ const char* name_of(Ending ending) {
       return "inverted";
     case Ending::outside_grid:
       return "outside_grid";
+    case Ending::gained_energy:
+      return "gained_energy";
     case Ending::domain_too_large:
       return "domain_too_large";
   }

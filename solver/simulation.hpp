@@ -9,7 +9,7 @@
 
 namespace mpm {
 
-/// How a run ended. The last four are numerical failures: `step`, `time`, `particle` and `value` say where.
+/// How a run ended. The last five are numerical failures: `step`, `time`, `particle` and `value` say where.
 enum class Ending {
   reached_time,      ///< the end time asked for
   at_rest,           ///< the rest criterion was met
@@ -19,6 +19,7 @@ enum class Ending {
   not_finite,        ///< a particle's position, velocity or stress is not a finite number
   inverted,          ///< a particle's volume is not positive
   outside_grid,      ///< a particle's domain left the grid
+  gained_energy,     ///< the particles move with several times the energy that ever went into the scene
   domain_too_large,  ///< a particle's half size exceeds the cell size, beyond what its shape function covers
 };
 
@@ -70,6 +71,10 @@ struct RigidBodyState {
 struct Monitor {
   double unbalanced_force_ratio = 0.0;  ///< unbalanced force felt by the particles / total weight [-]
   double kinetic_energy_ratio = 0.0;    ///< kinetic energy of the grid / (total weight * cell size) [-]
+  /// Kinetic energy of the particles / all energy that went into the scene so far [-]: what they had at the start, in
+  /// motion and in stress, and what loads and rigid bodies have done. Above 1 energy came from nowhere. As of the
+  /// last look, which comes every 64 steps.
+  double energy_ratio = 0.0;
 };
 
 /// A scene in motion. Memory is reserved on construction; advancing allocates nothing, unless bodies scatter
@@ -94,6 +99,10 @@ class Simulation {
   std::int64_t arrangements() const;    ///< how often the particles have been put in the order of their cells
   std::int64_t memory() const;          ///< of particles, nodes and tables: all that grows with the scene [B]
   Monitor monitor() const;
+  /// Puts the particles in another state: position, displacement, velocity, half size, stress and volume, and what
+  /// else the scene keeps of strain, work and deformation gradient. Time goes on as it was. Mass and bodies have to be
+  /// those of the scene; throws std::invalid_argument for fields of other lengths. A run that has ended stays ended.
+  void set_particles(const ParticleFields& fields);
   ParticleFields particles() const;
   std::vector<RigidBodyState> rigid_bodies() const;  ///< in the order of the scene
 

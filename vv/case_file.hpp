@@ -12,6 +12,7 @@
 #include "vv/curve_file.hpp"
 #include "vv/element_test.hpp"
 #include "vv/model_choice.hpp"
+#include "vv/survey.hpp"
 
 namespace mpm::reference {
 class ManufacturedSolution;
@@ -72,6 +73,8 @@ struct Gate {
   std::string basis;   ///< theory, requirement, fit or reference_uncertainty
   std::string reason;  ///< why this threshold, for a person
   bool must_fail = false;  ///< a control: the configuration is known to be bad and the gate must turn red
+  std::vector<StabilityClass> classes = {};  ///< of the metric `class`: those that pass; its comparison is not read
+  std::string advice = {};  ///< of the same, for a person: what to do in such a scene; may be empty
 };
 
 /// What a claim turned out to be, as long as the gates it rests on are good.
@@ -210,6 +213,23 @@ struct AdviceTest {
   std::vector<double> asked;  ///< errors asked for [-]
 };
 
+/// How the class of each run is told: the key `classification` of a case.
+struct Classification {
+  std::string probe;     ///< id of the probe whose signal should become constant; may be empty
+  double from = 0.0;     ///< the signal's window begins there [s]
+  double scale = 0.0;    ///< of the signal, SI unit of its quantity; 0 takes its largest magnitude
+  bool stress = false;   ///< whether the stress along the last axis is searched for a zig-zag
+  std::string error;     ///< metric that tells the error; may be empty
+  BehaviourLimits limits;
+};
+
+/// What rounding does to each run: the key `rounding` of a case. Runs are compared with the one that differs from them
+/// in the axes of the baseline alone.
+struct RoundingRequest {
+  std::vector<Selector> baseline;  ///< values of axes that make the run to compare with: double, in order
+  std::string cells;  ///< axis of the cell size, from coarse to fine; the error of the cells is estimated along it
+};
+
 /// The part of a two-dimensional scene that a figure shows.
 struct ViewRequest {
   PerAxis lower{}, upper{};  ///< [m], lower below upper along both axes
@@ -218,7 +238,7 @@ struct ViewRequest {
 /// A picture the report draws from the verdict of the case.
 struct FigureRequest {
   std::string id;
-  std::string kind;      ///< profiles, convergence, bars, history, curves, fields, model, decomposition, comparison, pairs, trend, trade
+  std::string kind;      ///< profiles, convergence, bars, history, curves, fields, model, decomposition, comparison, pairs, trend, trade, stability
   std::string caption;
   std::string panels;    ///< swept parameter that separates panels; may be empty
   std::string series;    ///< swept parameter that separates curves; may be empty
@@ -236,6 +256,8 @@ struct FigureRequest {
   std::vector<std::string> measurements = {};  ///< comparison: compared; fields: drawn on top as lines. Ids of the case's
   std::vector<std::string> pairs = {};         ///< pairs: ids of the case's paired predictions
   std::string trade = {};                      ///< trade: title of one of the case's trades
+  /// Stability: the axis along x of the map; time steps are along y.
+  std::string map_axis = {};
   std::string abscissa = {};                   ///< trend: the metric along x; `metrics` are along y, `over` the axis
   /// Trend: published curves drawn beside the runs.
   std::vector<std::shared_ptr<const CurveFile>> published = {};
@@ -252,6 +274,7 @@ struct RunRequest {
   std::optional<ElementTest> element = std::nullopt;  ///< checked; stands in place of the scene
   int threads = 1;                                    ///< share the work of each step; they change no bit
   ModelRequest model_request = {};
+  std::string refusal = {};  ///< why the scene cannot be simulated, of a case that allows it; then `scene` is not checked
   std::vector<ModelChoice> model = {};         ///< how `scene` came from what is written, and why
   std::optional<double> width = std::nullopt;  ///< of a strip of which `scene` is the column [m]
 };
@@ -277,6 +300,9 @@ struct Case {
   std::vector<Reading> readings;
   std::vector<TradeRequest> trades;
   std::optional<AdviceTest> advice;
+  std::optional<SurveyRequest> survey;  ///< every run is a survey of its time steps
+  std::optional<Classification> classification;
+  std::optional<RoundingRequest> rounding;
   std::vector<Gate> gates;
   std::vector<FigureRequest> figures;
   std::filesystem::path file;

@@ -88,7 +88,7 @@ std::vector<double> numbers_from(const Json& json) {
 
 Ending ending_from(const std::string& name) {
   for (Ending ending : {Ending::reached_time, Ending::at_rest, Ending::not_at_rest,
-                        Ending::reached_displacement, Ending::not_reached, Ending::not_finite, Ending::inverted, Ending::outside_grid, Ending::domain_too_large}) {
+                        Ending::reached_displacement, Ending::not_reached, Ending::not_finite, Ending::inverted, Ending::outside_grid, Ending::gained_energy, Ending::domain_too_large}) {
     if (name == name_of(ending)) return ending;
   }
   throw std::runtime_error("unknown ending: " + name);

@@ -4,12 +4,14 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "solver/simulation.hpp"
 #include "vv/case_file.hpp"
+#include "vv/survey.hpp"
 
 namespace mpm::vv {
 
@@ -80,6 +82,9 @@ struct Record {
                  ///< scene, and of an element test what only the law itself knows
   std::vector<Snapshot> snapshots;  ///< in the order they were taken
   std::vector<ModelChoice> model;   ///< what was simulated instead of what was written, and what was left as it is
+  /// Of a run that ended as a numerical failure: the last state seen in which no energy had come from nowhere.
+  std::optional<Snapshot> last_good;
+  std::optional<Survey> survey;     ///< of a case that surveys time steps, in place of all that describes one run
   std::vector<ElementCurve> paths;  ///< of an element test, over the imposed strain
   Cost cost;
 

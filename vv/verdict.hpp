@@ -11,6 +11,7 @@
 #include "vv/grid_convergence.hpp"
 #include "vv/measurement.hpp"
 #include "vv/record.hpp"
+#include "vv/rounding.hpp"
 #include "vv/trade.hpp"
 
 namespace mpm::vv {
@@ -60,6 +61,8 @@ struct RunVerdict {
   std::vector<Curve> curves;  ///< the run's own and the references it was judged against
   std::vector<CurveComparison> comparisons;  ///< with measured curves, in the order of the case's measurements
   std::vector<GateResult> gates;
+  std::optional<StabilityClass> stability;  ///< of a case that classifies its runs
+  Behaviour behaviour;                      ///< what it was told by
 };
 
 /// A metric over a refinement, with observed orders between neighbours.
@@ -132,6 +135,7 @@ struct CaseVerdict {
   std::vector<SeriesVerdict> series;
   std::vector<PairsVerdict> pairs;  ///< in the order of the case's
   std::vector<TradeVerdict> trades;  ///< in the order of the case's, one a problem
+  std::vector<RoundingRow> rounding;  ///< of a case that asks for it
   std::optional<AdviceVerdict> advice;  ///< of a case that puts advice to the test
   /// On pairs and on advice, and those that found nothing to judge: every one of these a failure.
   std::vector<GateResult> gates;

@@ -229,7 +229,7 @@ TEST(Documentation, NamesEveryMetricReferenceFieldAndMetamorphosis) {
   for (const Metamorphosis& metamorphosis : metamorphosis_catalogue())
     EXPECT_TRUE(names(section("Metamorphoses"), metamorphosis.name)) << metamorphosis.name;
   for (const Ending ending : {Ending::reached_time, Ending::at_rest, Ending::not_at_rest,
-                              Ending::reached_displacement, Ending::not_reached, Ending::not_finite, Ending::inverted, Ending::outside_grid, Ending::domain_too_large})
+                              Ending::reached_displacement, Ending::not_reached, Ending::not_finite, Ending::inverted, Ending::outside_grid, Ending::gained_energy, Ending::domain_too_large})
     EXPECT_TRUE(names(page(), name_of(ending))) << name_of(ending);
 }
 
