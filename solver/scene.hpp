@@ -240,9 +240,9 @@ struct Scene {
   /// Fills each body in a random order of its particles, the same for the same number; no order is another answer but
   /// for rounding.
   std::optional<std::uint64_t> shuffle;
-  /// Of USL: for the strain, a node of less mass than this fraction of its share of full cells is as slow as one that
-  /// has it, see `strain_velocity`; in (0, 1]. Without one, nodes at a free surface strain the last particle by
-  /// accelerations that it never feels.
+  /// Of USL, in (0, 1]: a node of less mass than this fraction of what a layer of particles across a cell weighs strains
+  /// them as if it were accelerated no more than they are, see `Transfer::slow_light_nodes`. Without one, nodes beyond
+  /// a free surface strain the last particle by accelerations that it never feels.
   std::optional<double> light_nodes;
   /// Whether the run is watched for energy that comes from nowhere. Only a measurement of what that costs has a reason
   /// to switch it off.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <limits>
 #include <variant>
 #include <vector>
@@ -35,6 +36,7 @@ class TimeStepper {
         largest_half_size_(half_size_limit(scene)),
         empty_mass_(empty_node_mass_ratio<Real> *
                     static_cast<Real>(total_mass(particles_) / static_cast<double>(particles_.count()))),
+        light_nodes_(light_node_fractions(scene)),
         average_(scene, grid_),
         blocks_(grid_, SchemeTraits<scheme>::Shape::nodes_before, particles_),
         workers_(threads) {
@@ -143,6 +145,9 @@ class TimeStepper {
       }
     });
     rigid_bodies_.set_motion(grid_, empty_mass_);
+    if (light_nodes_.empty()) return;
+    in_rows([&](Rows rows) { edges_.set_strain_mass(grid_, rows); });
+    rigid_bodies_.set_strain_mass(grid_);
   }
 
   void take_velocity_from_momentum() {
@@ -153,7 +158,7 @@ class TimeStepper {
     rigid_bodies_.set_motion(grid_, empty_mass_);
   }
 
-  /// Averages a number of the particles over the cells, `own(block, layer)`.
+  /// Averages a number of the particles over the cells, `own(body, block, layer)`.
   template <class Own>
   void average_over_cells(Own&& own) {
     in_rows([&](Rows rows) { average_.clear(grid_, rows); });
@@ -162,7 +167,7 @@ class TimeStepper {
       Value content(0), volume(0);
       Transfers::for_each_layer(particles_, grid_, block, [&](const Layer& layer) {
         Value volume_of_layer = volume_of(layer.slot);
-        Value content_of_layer = volume_of_layer * own(block, layer);
+        Value content_of_layer = volume_of_layer * own(body, block, layer);
         Transfers::for_each_stray(particles_, grid_, block, layer, [&](int lane, Eigen::Index cell) {
           average_.add(cell, lane_of<Real>(content_of_layer, lane), lane_of<Real>(volume_of_layer, lane));
           set_lane(content_of_layer, lane, Real(0));
@@ -178,8 +183,8 @@ class TimeStepper {
   /// Before the stress is updated, for bodies that share their dilation.
   void average_dilation() {
     if (!average_.is_wanted()) return;
-    average_over_cells([&](const Block& block, const Layer& layer) {
-      return trace<Dim, Value>(own_deformation_of_layer(block, layer).strain_increment);
+    average_over_cells([&](std::size_t body, const Block& block, const Layer& layer) {
+      return trace<Dim, Value>(own_deformation_of_layer(body, block, layer).strain_increment);
     });
   }
 
@@ -188,7 +193,7 @@ class TimeStepper {
   void average_stress() {
     if constexpr (Dim == 2) {
       if (!average_.is_wanted()) return;
-      average_over_cells([&](const Block&, const Layer& layer) {
+      average_over_cells([&](std::size_t, const Block&, const Layer& layer) {
         return (load<Value>(&particles_.stress[0][layer.slot]) +
                 load<Value>(&particles_.stress[1][layer.slot])) /
                2;
@@ -201,7 +206,7 @@ class TimeStepper {
     average_dilation();
     for_each_layer_with_law(
         [&](const auto& law, std::size_t body, const Block& block, const Layer& layer, Log& log) {
-          const Motion motion = Transfers::template gather<true, true>(particles_, grid_, block, layer);
+          const Motion motion = all_motion_of_layer(body, block, layer);
           const Value time_step = time_step_of(layer.slot);
           const Vector<Dim, Value> travel = accelerate_layer(motion, time_step, layer.slot);
           auto deformation = deformation_of<Dim, Value>(motion.gradient, time_step);
@@ -297,14 +302,39 @@ class TimeStepper {
   /// What the stress and the volume of a body's particles follow.
   Deformation<Dim, Value> deformation_of_layer(std::size_t body, const Block& block,
                                                const Layer& layer) const {
-    Deformation<Dim, Value> deformation = own_deformation_of_layer(block, layer);
+    Deformation<Dim, Value> deformation = own_deformation_of_layer(body, block, layer);
     share_dilation(body, block, layer, deformation);
     return deformation;
   }
 
-  Deformation<Dim, Value> own_deformation_of_layer(const Block& block, const Layer& layer) const {
-    const Motion motion = Transfers::template gather<false, true>(particles_, grid_, block, layer);
+  Deformation<Dim, Value> own_deformation_of_layer(std::size_t body, const Block& block, const Layer& layer) const {
+    const Motion motion = light_nodes_.empty()
+                              ? Transfers::template gather<false, true>(particles_, grid_, block, layer)
+                              : all_motion_of_layer(body, block, layer);
     return deformation_of<Dim, Value>(motion.gradient, time_step_of(layer.slot));
+  }
+
+  /// With light nodes as the scene treats them.
+  Motion all_motion_of_layer(std::size_t body, const Block& block, const Layer& layer) const {
+    Motion motion = Transfers::template gather<true, true>(particles_, grid_, block, layer);
+    if (!light_nodes_.empty()) {
+      Transfers::slow_light_nodes(particles_, grid_, block, layer,
+                                  {light_nodes_[body], time_step_, empty_mass_}, motion);
+    }
+    return motion;
+  }
+
+  /// [body] The mass of a node that counts as full over that of a particle: the scene's fraction of a layer of
+  /// particles one cell wide. Empty for scenes that do not treat light nodes.
+  static std::vector<Real> light_node_fractions(const Scene& scene) {
+    std::vector<Real> fractions;
+    if (!scene.light_nodes) return fractions;
+    for (const Body& body : scene.bodies) {
+      double in_cell = 1.0;
+      for (std::size_t a = 0; a < Dim; ++a) in_cell *= body.particles_per_cell[a];
+      fractions.push_back(static_cast<Real>(*scene.light_nodes * std::pow(in_cell, (Dim - 1.0) / Dim)));
+    }
+    return fractions;
   }
 
   /// In a body that asks for it, the mean dilation of its cell takes the place of each particle's own.
@@ -491,6 +521,7 @@ class TimeStepper {
   UpdateOrder order_;
   Real time_step_, flip_, damping_, largest_half_size_, empty_mass_;
   bool has_fault_ = false, is_disordered_ = false;
+  std::vector<Real> light_nodes_;
   CellAverage<Dim, Real> average_;
   std::int64_t cell_crossings_ = 0, arrangements_ = 0;
   CellBlocks<Dim, Real> blocks_;
