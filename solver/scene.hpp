@@ -234,8 +234,9 @@ struct Scene {
   /// Largest half size of a particle of cpgimp along any axis, in cells, above 0 and at most 1: a domain that would
   /// grow beyond stays as large. Without one, such a run ends with domain_too_large.
   std::optional<double> domain_limit;
-  /// Sums that go over all steps (displacement, position, velocity, stress of elastic laws) are compensated
-  /// [Kahan65]: the part of each increment that rounding cuts off is kept and added with the next.
+  /// Sums that go over all steps (position, displacement, velocity, volume, half size, deformation gradient, and the
+  /// stress of linear elastic bodies) are compensated [Kahan65]: the part of each increment that rounding cuts off is
+  /// kept and added with the next.
   bool compensated_sums = false;
   /// Fills each body in a random order of its particles, the same for the same number; no order is another answer but
   /// for rounding.

@@ -7,6 +7,7 @@
 
 #include "solver/cell_average.hpp"
 #include "solver/cell_blocks.hpp"
+#include "solver/compensated_sum.hpp"
 #include "solver/grid_motion.hpp"
 #include "solver/loading.hpp"
 #include "solver/material.hpp"
@@ -28,8 +29,9 @@ class TimeStepper {
         edges_(scene, grid_),
         rigid_bodies_(scene, grid_, time_step),
         loading_(scene, time_step, particles_),
-        update_stress_(scene.sums_strain, scene.sums_work, scene.objectivity == Objectivity::jaumann),
+        update_stress_(scene),
         order_(scene.update_order),
+        compensates_(scene.compensated_sums),
         time_step_(static_cast<Real>(time_step)),
         flip_(static_cast<Real>(scene.flip_fraction)),
         damping_(static_cast<Real>(scene.damping)),
@@ -78,6 +80,7 @@ class TimeStepper {
   template <class Change>
   void change_particles(Change&& change) {
     change(particles_);
+    particles_.clear_low_parts();
     has_fault_ = find_fault().kind != StencilFault::none;
     if (!has_fault_) arrange();
   }
@@ -364,9 +367,15 @@ class TimeStepper {
   Vector<Dim, Value> accelerate_layer(const Motion& motion, const Value& time_step, Eigen::Index slot) {
     Vector<Dim, Value> travel;
     for (std::size_t a = 0; a < Dim; ++a) {
-      const Value flip_velocity =
-          load<Value>(&particles_.velocity[a][slot]) + time_step * motion.acceleration[a];
-      store(motion.velocity[a] + flip_ * (flip_velocity - motion.velocity[a]), &particles_.velocity[a][slot]);
+      Real* const velocity = &particles_.velocity[a][slot];
+      const Value old = load<Value>(velocity);
+      if (compensates_) {
+        const Value change = flip_ * (time_step * motion.acceleration[a]) + (1 - flip_) * (motion.velocity[a] - old);
+        add_compensated(change, velocity, &particles_.low.velocity[a][slot]);
+      } else {
+        const Value flip_velocity = old + time_step * motion.acceleration[a];
+        store(motion.velocity[a] + flip_ * (flip_velocity - motion.velocity[a]), velocity);
+      }
       travel[a] = time_step * motion.velocity[a];
     }
     return travel;
@@ -385,9 +394,17 @@ class TimeStepper {
     if constexpr (SchemeTraits<scheme>::updates_half_size) {
       for (std::size_t a = 0; a < Dim; ++a) {
         Real* const half_size = &particles_.half_size[a][slot];
-        const Value grown = load<Value>(half_size) * (1 + deformation.strain_increment[a]);
         const Value largest(largest_half_size_);
-        store(select(grown < largest, grown, largest), half_size);
+        if (compensates_) {
+          Real* const low = &particles_.low.half_size[a][slot];
+          add_compensated(load<Value>(half_size) * deformation.strain_increment[a], half_size, low);
+          const Value grown = load<Value>(half_size);
+          store(select(grown < largest, grown, largest), half_size);
+          store(select(grown < largest, load<Value>(low), Value(0)), low);
+        } else {
+          const Value grown = load<Value>(half_size) * (1 + deformation.strain_increment[a]);
+          store(select(grown < largest, grown, largest), half_size);
+        }
       }
     }
   }
@@ -397,10 +414,17 @@ class TimeStepper {
     Vector<Dim, Value> place;
     auto crosses = Value(0) > Value(0), is_good = Value(0) < load<Value>(&particles_.volume[slot]);
     for (std::size_t a = 0; a < Dim; ++a) {
-      const Value before = load<Value>(&particles_.position[a][slot]), after = before + travel[a];
-      store(after, &particles_.position[a][slot]);
-      Real* const displacement = &particles_.displacement[a][slot];
-      store(load<Value>(displacement) + travel[a], displacement);
+      Real *const position = &particles_.position[a][slot], *const displacement = &particles_.displacement[a][slot];
+      const Value before = load<Value>(position);
+      Value after = before + travel[a];
+      if (compensates_) {
+        add_compensated(travel[a], position, &particles_.low.position[a][slot]);
+        add_compensated(travel[a], displacement, &particles_.low.displacement[a][slot]);
+        after = load<Value>(position);
+      } else {
+        store(after, position);
+        store(load<Value>(displacement) + travel[a], displacement);
+      }
       place[a] = in_cells(grid_, after, a);
       crosses = crosses || floor(place[a]) != floor(in_cells(grid_, before, a));
       constexpr Real ghosts = Grid<Dim, Real>::ghost_layers;
@@ -527,6 +551,7 @@ class TimeStepper {
   StressUpdate<Dim, Real> update_stress_;
   std::vector<typename Laws<Dim, Real>::Any> laws_;
   UpdateOrder order_;
+  bool compensates_;
   Real time_step_, flip_, damping_, largest_half_size_, empty_mass_;
   bool has_fault_ = false, is_disordered_ = false;
   std::vector<Real> light_nodes_;
