@@ -193,6 +193,13 @@ double check_extent(const Scene& scene, const Body& body, std::size_t axis, cons
   require(upper <= scene.grid_upper[axis] + slack, upper_place,
           "a body inside the grid, which ends at " + text_of(scene.grid_upper[axis], "m"),
           text_of(upper, "m"));
+  if (body.anywhere) {
+    require(whole(spacings_at(upper) - spacings_at(lower)), upper_place,
+            "a whole number of particle spacings of " + text_of(spacing, "m") + " above the lower edge " +
+                text_of(lower, "m"),
+            text_of(upper, "m") + ", " + text_of(spacings_at(upper) - spacings_at(lower)) + " spacings above it");
+    return spacings_at(upper) - spacings_at(lower);
+  }
   for (const auto& [edge_place, edge] : {std::pair(lower_place, lower), std::pair(upper_place, upper)}) {
     require(whole(spacings_at(edge)), edge_place,
             "a whole number of particle spacings of " + text_of(spacing, "m") +

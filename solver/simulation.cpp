@@ -2,7 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
+#include <utility>
 
+#include "solver/energy.hpp"
+#include "solver/energy_watch.hpp"
 #include "solver/time_step.hpp"
 
 namespace mpm {
@@ -30,6 +34,49 @@ double time_step_of(const Scene& scene) {
   return std::get<StableFraction>(scene.time_step).fraction * scene.cell_size / fastest_wave(scene);
 }
 
+/// The scene seen from the lower corner of its grid. Particles are kept in these coordinates, so that they lose no
+/// digits however far from the origin the scene lies.
+Scene from_grid_corner(Scene scene) {
+  const PerAxis corner = scene.grid_lower;
+  const auto move = [&](PerAxis& place) {
+    for (std::size_t a = 0; a < place.size(); ++a) place[a] -= corner[a];
+  };
+  const auto vertical = static_cast<std::size_t>(scene.dimension - 1);
+  move(scene.grid_lower);
+  move(scene.grid_upper);
+  for (Body& body : scene.bodies) {
+    move(body.lower);
+    move(body.upper);
+    if (body.ring) move(body.ring->center);
+    if (!body.initial_stress) continue;
+    if (auto* ground = std::get_if<GeostaticStress>(&*body.initial_stress)) ground->surface -= corner[vertical];
+  }
+  for (RigidBody& body : scene.rigid_bodies) {
+    move(body.lower);
+    move(body.upper);
+  }
+  for (SurfaceLoad& load : scene.surface_loads) {
+    const double along = corner[static_cast<std::size_t>(1 - load.axis)];
+    load.begin -= along;
+    load.end -= along;
+  }
+  if (scene.driven_motion) {
+    const auto seen_from = [corner](const PerAxis& place) {
+      PerAxis moved = place;
+      for (std::size_t a = 0; a < moved.size(); ++a) moved[a] += corner[a];
+      return moved;
+    };
+    const auto of_corner = [&](auto& function) {
+      function = [inner = std::move(function), seen_from](const PerAxis& place, double time) {
+        return inner(seen_from(place), time);
+      };
+    };
+    of_corner(scene.driven_motion->velocity);
+    of_corner(scene.driven_motion->body_force);
+  }
+  return scene;
+}
+
 /// [particle * components + component], particles in the order of their filling; zeros for absent fields.
 template <class Real, std::size_t Components>
 std::vector<double> interleave(const std::array<Field<Real>, Components>& fields,
@@ -41,6 +88,23 @@ std::vector<double> interleave(const std::array<Field<Real>, Components>& fields
     }
   }
   return all;
+}
+
+/// The inverse of `interleave`; nothing for a field the scene does not keep. Throws std::invalid_argument for another
+/// number of values.
+template <class Real, std::size_t Components>
+void scatter_back(const std::vector<double>& all, const char* name, const std::vector<std::int32_t>& slot_of,
+                  std::array<Field<Real>, Components>& fields) {
+  if (fields[0].size() == 0) return;
+  if (all.size() != slot_of.size() * Components) {
+    throw std::invalid_argument(std::string(name) + ": expected " + std::to_string(slot_of.size() * Components) +
+                                " values, found " + std::to_string(all.size()));
+  }
+  for (std::size_t p = 0; p < slot_of.size(); ++p) {
+    for (std::size_t c = 0; c < Components; ++c) {
+      fields[c][slot_of[p]] = static_cast<Real>(all[p * Components + c]);
+    }
+  }
 }
 
 template <class Real>
@@ -106,6 +170,7 @@ class Simulation::Engine {
   virtual Monitor monitor() const = 0;
   virtual ParticleFields particles() const = 0;
   virtual std::vector<RigidBodyState> rigid_bodies() const = 0;
+  virtual void set_particles(const ParticleFields& fields) = 0;
 
   bool advance() {
     if (ended_) return false;
@@ -113,6 +178,7 @@ class Simulation::Engine {
     if (step(outcome_.time, scene_.gravity.level * fraction)) {
       ++outcome_.step;
       outcome_.time = time_at(outcome_.step);
+      if (outcome_.step % steps_between_looks == 0 && scene_.watched) watch_energy(scene_.gravity.level * fraction);
     }
     if (!ended_ && is_finished()) {
       ended_ = true;
@@ -128,6 +194,8 @@ class Simulation::Engine {
  protected:
   /// One step from `time` on; false after `fail`.
   virtual bool step(double time, double gravity_level) = 0;
+  /// Calls `fail` if the particles move with energy that came from nowhere.
+  virtual void watch_energy(double gravity_level) = 0;
   /// Calls `fail` if a particle is in a state that has no next step. True if so.
   virtual bool look_for_fault() = 0;
   /// Of a body's particles, by mass, along an axis [m].
@@ -188,7 +256,9 @@ template <int Dim, class Real, Scheme scheme>
 class Simulation::EngineOf final : public Simulation::Engine {
  public:
   EngineOf(const Scene& description, int threads)
-      : Engine(description), stepper_(description, time_step(), threads) {}
+      : Engine(description), local_(from_grid_corner(description)), stepper_(local_, time_step(), threads) {
+    start_watch();
+  }
 
   std::int64_t particle_count() const override { return stepper_.particles().count(); }
   std::int64_t cell_crossings() const override { return stepper_.cell_crossings(); }
@@ -205,7 +275,10 @@ class Simulation::EngineOf final : public Simulation::Engine {
         energy += 0.5 * static_cast<double>(grid.mass[i]) * velocity * velocity;
       }
     }
-    return {stepper_.unbalanced_force() / weight(), energy / (weight() * scene().cell_size)};
+    return {.unbalanced_force_ratio = stepper_.unbalanced_force() / weight(),
+            .kinetic_energy_ratio = energy / (weight() * scene().cell_size),
+            .energy_ratio = watch_.ratio(),
+            .largest_energy_ratio = watch_.largest()};
   }
 
   ParticleFields particles() const override {
@@ -215,6 +288,7 @@ class Simulation::EngineOf final : public Simulation::Engine {
     fields.initial_position = initial_positions();
     fields.displacement = interleave(p.displacement, p.slot_of);
     fields.position = interleave(p.position, p.slot_of);
+    for (std::size_t k = 0; k < fields.position.size(); ++k) fields.position[k] += scene().grid_lower[k % Dim];
     fields.velocity = interleave(p.velocity, p.slot_of);
     fields.half_size = interleave(p.half_size, p.slot_of);
     fields.stress = interleave(p.stress, p.slot_of);
@@ -236,6 +310,28 @@ class Simulation::EngineOf final : public Simulation::Engine {
       }
     }
     return fields;
+  }
+
+  void set_particles(const ParticleFields& fields) override {
+    const std::size_t particles = stepper_.particles().slot_of.size();
+    if (fields.dimension != Dim || fields.mass.size() != particles || fields.volume.size() != particles)
+      throw std::invalid_argument("the state of other particles");
+    stepper_.change_particles([&](Particles<Dim, Real>& p) {
+      std::vector<double> local = fields.position;
+      for (std::size_t k = 0; k < local.size(); ++k) local[k] -= scene().grid_lower[k % Dim];
+      scatter_back(local, "position", p.slot_of, p.position);
+      scatter_back(fields.displacement, "displacement", p.slot_of, p.displacement);
+      scatter_back(fields.velocity, "velocity", p.slot_of, p.velocity);
+      scatter_back(fields.half_size, "half_size", p.slot_of, p.half_size);
+      scatter_back(fields.stress, "stress", p.slot_of, p.stress);
+      scatter_back(fields.strain, "strain", p.slot_of, p.strain);
+      scatter_back(fields.stress_work, "stress_work", p.slot_of, p.stress_work);
+      scatter_back(fields.deformation_gradient, "deformation_gradient", p.slot_of, p.deformation_gradient);
+      std::array<Field<Real>, 1> volume{std::move(p.volume)};
+      scatter_back(fields.volume, "volume", p.slot_of, volume);
+      p.volume = std::move(volume[0]);
+    });
+    start_watch();
   }
 
   std::vector<RigidBodyState> rigid_bodies() const override {
@@ -263,8 +359,22 @@ class Simulation::EngineOf final : public Simulation::Engine {
   bool look_for_fault() override {
     const auto fault = stepper_.find_fault();
     if (fault.kind == StencilFault::none) return false;
-    fail(ending_of(fault.kind), fault.particle, fault.value);
+    const bool is_place = fault.kind == StencilFault::outside_grid || fault.kind == StencilFault::not_finite;
+    fail(ending_of(fault.kind), fault.particle, fault.value + (is_place ? scene().grid_lower[0] : 0.0));
     return true;
+  }
+
+  void watch_energy(double gravity_level) override {
+    if (turns_) return;
+    Vector<Dim, Real> gravity;
+    for (std::size_t a = 0; a < Dim; ++a) {
+      gravity[a] = static_cast<Real>(gravity_level * scene().gravity.acceleration[a]);
+    }
+    watch_.look(stepper_.particles(), gravity, static_cast<double>(steps_between_looks) * time_step(),
+                work_of_rigid_bodies());
+    if (!watch_.gains_energy() || look_for_fault()) return;
+    fail(Ending::gained_energy, stepper_.particles().id[static_cast<std::size_t>(watch_.fastest())],
+         watch_.ratio());
   }
 
   double mean_displacement(std::size_t body, std::size_t axis) const override {
@@ -282,10 +392,10 @@ class Simulation::EngineOf final : public Simulation::Engine {
   /// a tenth of the memory.
   std::vector<double> initial_positions() const {
     std::vector<double> all;
-    for (const Body& body : scene().bodies) {
-      for (const PerAxis& center : lattice_of(scene(), body).centers) {
+    for (const Body& body : local_.bodies) {
+      for (const PerAxis& center : lattice_of(local_, body).centers) {
         for (std::size_t a = 0; a < Dim; ++a) {
-          all.push_back(static_cast<double>(static_cast<Real>(center[a])));
+          all.push_back(static_cast<double>(static_cast<Real>(center[a])) + scene().grid_lower[a]);
         }
       }
     }
@@ -313,7 +423,35 @@ class Simulation::EngineOf final : public Simulation::Engine {
     return sum;
   }
 
+  void start_watch() {
+    if (!scene().watched) return;
+    turns_ = std::any_of(scene().rigid_bodies.begin(), scene().rigid_bodies.end(),
+                         [](const RigidBody& body) { return body.angular_velocity != 0.0; });
+    const ParticleFields now = particles();
+    watch_.start(scene(), stepper_.particles(), kinetic_energy(now) + strain_energy(scene(), now));
+    work_of_rigid_bodies();
+  }
+
+  /// Done since it was last asked [J per unit of the absent dimensions].
+  double work_of_rigid_bodies() {
+    const std::vector<PerAxis>& impulses = stepper_.rigid_bodies().impulses();
+    seen_impulses_.resize(impulses.size());
+    double work = 0.0;
+    for (std::size_t b = 0; b < impulses.size(); ++b) {
+      for (std::size_t a = 0; a < Dim; ++a) {
+        work += std::abs((impulses[b][a] - seen_impulses_[b][a]) * scene().rigid_bodies[b].velocity[a]);
+      }
+      seen_impulses_[b] = impulses[b];
+    }
+    return work;
+  }
+
+  const Scene local_;  ///< seen from the lower corner of the grid
   TimeStepper<Dim, Real, scheme> stepper_;
+  EnergyWatch<Dim, Real> watch_;
+  std::vector<PerAxis> seen_impulses_;
+  /// A rigid body turns: the work of its torque is not summed, so energy is not watched.
+  bool turns_ = false;
 };
 
 Simulation::Simulation(const Scene& scene, int threads) {
@@ -352,6 +490,7 @@ std::int64_t Simulation::arrangements() const { return engine_->arrangements(); 
 std::int64_t Simulation::memory() const { return engine_->memory(); }
 Monitor Simulation::monitor() const { return engine_->monitor(); }
 ParticleFields Simulation::particles() const { return engine_->particles(); }
+void Simulation::set_particles(const ParticleFields& fields) { engine_->set_particles(fields); }
 std::vector<RigidBodyState> Simulation::rigid_bodies() const { return engine_->rigid_bodies(); }
 
 }  // namespace mpm

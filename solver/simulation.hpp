@@ -73,8 +73,9 @@ struct Monitor {
   double kinetic_energy_ratio = 0.0;    ///< kinetic energy of the grid / (total weight * cell size) [-]
   /// Kinetic energy of the particles / all energy that went into the scene so far [-]: what they had at the start, in
   /// motion and in stress, and what loads and rigid bodies have done. Above 1 energy came from nowhere. As of the
-  /// last look, which comes every 64 steps.
+  /// last look, which comes every 64 steps; 0 where a rigid body turns, whose work is not known.
   double energy_ratio = 0.0;
+  double largest_energy_ratio = 0.0;  ///< at any look so far [-]
 };
 
 /// A scene in motion. Memory is reserved on construction; advancing allocates nothing, unless bodies scatter

@@ -72,6 +72,14 @@ class TimeStepper {
     return true;
   }
 
+  /// Lets `change(particles)` put the particles in another state, wherever they then are.
+  template <class Change>
+  void change_particles(Change&& change) {
+    change(particles_);
+    has_fault_ = find_fault().kind != StencilFault::none;
+    if (!has_fault_) arrange();
+  }
+
   const Particles<Dim, Real>& particles() const { return particles_; }
   const Grid<Dim, Real>& grid() const { return grid_; }
   /// Rows of nodes that can carry mass; the others are not kept up to date.

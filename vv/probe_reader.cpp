@@ -156,7 +156,6 @@ void read_component(const JsonPlace& place, const RunRequest& run, HistoryProbe&
     require_constrained(place, run, probe, axes == 1 ? "x" : "y");
 }
 
-bool stores_energy(const Body& body) { return !std::holds_alternative<ZhangElastic>(body.material); }
 
 /// Checks a probe against the scene of a run and fills in what only the scene tells.
 void read_probed(const JsonPlace& place, const RunRequest& run, HistoryProbe& probe) {
@@ -170,13 +169,6 @@ void read_probed(const JsonPlace& place, const RunRequest& run, HistoryProbe& pr
   if (probe.quantity == "stress_work" && !run.scene.sums_work)
     place["quantity"].refuse("a quantity that the scene keeps",
                              ", which needs sums_work to be true" + in_run(run));
-  if (probe.quantity != "strain_energy") return;
-  for (const Body& body : run.scene.bodies) {
-    if (stores_energy(body)) continue;
-    place["quantity"].refuse(
-        "a quantity of the bodies there are; strain energy needs linear_elastic, mohr_coulomb or neo_hookean",
-        ", but \"" + body.name + "\" has another law" + in_run(run));
-  }
 }
 
 HistoryProbe read_probe(const JsonPlace& place, const std::vector<RunRequest>& runs,

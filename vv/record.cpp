@@ -26,7 +26,7 @@
 namespace mpm::vv {
 namespace {
 
-constexpr const char* record_schema = "mpmvv-record/2";
+constexpr const char* record_schema = "mpmvv-record/3";
 constexpr std::int64_t particle_steps_per_pulse = 1
                                                   << 16;  // a few milliseconds: prompt, yet too rare to cost
 
@@ -339,6 +339,7 @@ class Recorder {
         1, particle_steps_per_pulse / std::max<std::int64_t>(1, simulation_.particle_count()));
     while (advance(steps_per_pulse)) {
       observe();
+      keep_good_state();
       beat();
     }
     beat();
@@ -357,6 +358,7 @@ class Recorder {
     bool going_on = true;
     for (std::int64_t step = 0; step < most_steps && going_on && !something_is_due(); ++step) {
       going_on = simulation_.advance();
+      if (is_time_to_keep_state(simulation_.steps())) break;
     }
     wall_ += Clock::now() - began;
     if (early_wall_ < early) {
@@ -364,6 +366,20 @@ class Recorder {
       early_steps_ = simulation_.steps();
     }
     return going_on;
+  }
+
+  /// Often at first, when a run goes wrong at once; later so rarely that keeping the state costs nothing to speak of.
+  static bool is_time_to_keep_state(std::int64_t step) {
+    constexpr std::int64_t first = 64, regularly = 1024;
+    return step % regularly == 0 || (step < regularly && step >= first && (step & (step - 1)) == 0);
+  }
+
+  /// A state counts as good as long as no energy has come from nowhere.
+  void keep_good_state() {
+    if (!is_time_to_keep_state(simulation_.steps()) || good_step_ == simulation_.steps()) return;
+    if (!(simulation_.monitor().energy_ratio <= 1.0)) return;
+    good_state_ = simulation_.particles();
+    good_step_ = simulation_.steps();
   }
 
   bool is_due(const Sampler& sampler) const {
@@ -447,6 +463,8 @@ class Recorder {
     for (Sampler& sampler : samplers_) record.histories.push_back(std::move(sampler).history());
     record.non_finite_values = non_finite_values_of(end);
     record.digest = digest_of(end, record);
+    record.largest_energy_ratio = simulation_.monitor().largest_energy_ratio;
+    if (record.outcome.particle >= 0) record.last_good = last_good_state();
     record.cost = {.wall_seconds = std::chrono::duration<double>(wall_).count(),
                    .steps = simulation_.steps(),
                    .particle_steps = simulation_.steps() * simulation_.particle_count(),
@@ -454,6 +472,12 @@ class Recorder {
                    .early_seconds = std::chrono::duration<double>(early_wall_).count(),
                    .early_steps = early_steps_};
     return record;
+  }
+
+  Snapshot last_good_state() const {
+    const ParticleFields& fields = good_step_ > 0 ? good_state_ : start_;
+    return {fmt::format("last good state, step {}", good_step_),
+            static_cast<double>(good_step_) * simulation_.time_step(), rounded(fields)};
   }
 
   /// The factor by which a ramp has changed a body's mass. The particles carry the density of the last
@@ -515,7 +539,8 @@ class Recorder {
   const Scene& scene_;
   Simulation simulation_;
   const Pulse& pulse_;
-  ParticleFields start_;
+  ParticleFields start_, good_state_;
+  std::int64_t good_step_ = 0;
   std::vector<Sampler> samplers_;
   std::vector<SnapshotRequest> pending_;
   std::vector<Snapshot> snapshots_;
@@ -709,6 +734,8 @@ Json to_json(const Record& record) {
           {"profile", profile_to_json(record.profile)},
           {"histories", histories_to_json(record.histories)},
           {"snapshots", snapshots_to_json(record.snapshots)},
+          {"largest_energy_ratio", number(record.largest_energy_ratio)},
+          {"last_good", record.last_good ? snapshots_to_json({*record.last_good}) : Json::array()},
           {"model", model_to_json(record.model)},
           {"paths", paths_to_json(record.paths)},
           {"measured", measured_to_json(record.measured)}};
@@ -744,6 +771,9 @@ Record record_from_json(const Json& json) {
   record.profile = profile_from_json(json.at("profile"));
   record.histories = histories_from_json(json.at("histories"));
   record.snapshots = snapshots_from_json(json.at("snapshots"));
+  record.largest_energy_ratio = number_from(json.at("largest_energy_ratio"));
+  const std::vector<Snapshot> good = snapshots_from_json(json.at("last_good"));
+  if (!good.empty()) record.last_good = good.front();
   record.model = model_from_json(json.at("model"));
   record.paths = paths_from_json(json.at("paths"));
   record.measured = measured_from_json(json.at("measured"));
@@ -751,6 +781,13 @@ Record record_from_json(const Json& json) {
 }
 
 Record unsigned_record(const Case& definition, const RunRequest& request, const Pulse& pulse) {
+  if (!request.refusal.empty()) {
+    Record refused;
+    refused.failure = refused_prefix + request.refusal;
+    refused.case_id = definition.id;
+    refused.input_hash = input_hash(definition, request);
+    return refused;
+  }
   Record record = request.element ? record_element_test(*request.element, pulse)
                                   : record_scene(definition, request, pulse);
   record.case_id = definition.id;

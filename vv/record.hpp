@@ -80,6 +80,8 @@ struct Record {
   std::vector<std::pair<int, std::string>> repeats;
   Profile profile;
   std::vector<History> histories;
+  /// Energy of motion over all energy that ever went in, at its largest [-]; see `Monitor`.
+  double largest_energy_ratio = 0.0;
   std::map<std::string, double>
       measured;  ///< metrics that the record's states alone cannot tell, by name; of other descriptions of a
                  ///< scene, and of an element test what only the law itself knows
@@ -94,6 +96,9 @@ struct Record {
   /// The run ended where it was meant to: its final state can be judged.
   bool completed() const { return failure.empty() && outcome.completed(); }
 };
+
+/// What the `failure` of a run begins with whose scene the solver does not accept.
+inline const std::string refused_prefix = "refused: ";
 
 /// How a run ended, for a person: "run ended outside_grid at step 123, t = 0.5 s, particle 49, value 1.04".
 std::string ending_of(const Record& record);

@@ -26,12 +26,6 @@ class Observation {
   mutable std::optional<std::vector<RigidBodyState>> rigid_bodies_;
 };
 
-/// Energy stored in the strain of all particles [J per unit of the absent dimensions]. Of a linear elastic
-/// or Mohr–Coulomb body 1/2 stress : compliance : stress times the current volume, which is exact for small
-/// strain only; of a neo-Hookean body the potential of its law times the initial volume. Throws
-/// std::invalid_argument for a body with any other law.
-double strain_energy(const Scene& scene, const ParticleFields& fields);
-
 /// What all weight has gained in potential energy since the start, -mass gravity . displacement, in full
 /// gravity [J per unit of the absent dimensions].
 double potential_energy(const Scene& scene, const ParticleFields& fields);

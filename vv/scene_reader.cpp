@@ -133,7 +133,7 @@ InitialStress read_initial_stress(const JsonPlace& place, std::size_t axes) {
 
 Body read_body(const JsonPlace& place, std::size_t axes) {
   place.allow_only(keys_of(axes,
-                           {"name", "lower", "upper", "particles_per_cell", "density", "density_ramp", "inertia",
+                           {"name", "lower", "upper", "particles_per_cell", "density", "density_ramp", "inertia", "anywhere",
                             "velocity", "initial_stress", "material", "locking_control"},
                            {"ring"}));
   Body body;
@@ -149,6 +149,7 @@ Body read_body(const JsonPlace& place, std::size_t axes) {
   if (const JsonPlace ring = place["ring"]; ring.present()) body.ring = read_ring(ring, axes);
   if (const JsonPlace ramp = place["density_ramp"]; ramp.present())
     body.density_ramp = read_density_ramp(ramp);
+  body.anywhere = place["anywhere"].flag_or(false);
   if (const JsonPlace inertia = place["inertia"]; inertia.present())
     body.inertia = inertia.quantity(QuantityKind::density);
   if (const JsonPlace stress = place["initial_stress"]; stress.present()) {

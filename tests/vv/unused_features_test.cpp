@@ -139,6 +139,7 @@ const std::vector<OptionalKey>& optional_keys() {
       {"edges.y_upper", {}, "required in two dimensions"},
       {"body.ring", {}, only_absence},
       {"body.density_ramp", {}, only_absence},
+      {"body.anywhere", {{bar, "/bodies/0/anywhere", false}, {block, "/bodies/0/anywhere", true}}},
       {"body.inertia", {}, "one of the same size still keeps to itself when the density changes"},
       {"body.velocity",
        {{bar, "/bodies/0/velocity", {"0 m/s"}}, {block, "/bodies/1/velocity", {"0 m/s", "0 m/s"}}}},
