@@ -21,7 +21,7 @@ namespace {
 
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 constexpr double most_digits = 17.0;  ///< that a double can have
-constexpr double highest_order = 2.0, lowest_order = 1.0;
+constexpr double highest_order = 2.0, lowest_order = 1.0, least_reliable_order = 0.5;
 /// Parts of a cell that tell places apart. No number of particles in a cell puts one on the line between two.
 constexpr double parts_of_cell = 1024.0;
 
@@ -174,12 +174,12 @@ std::vector<double> distances(const std::vector<const Level*>& levels, Field fie
 
 /// Of the three finest sizes, by values that are so far apart; the highest where they tell none.
 double order_of(const std::vector<double>& cell_size, const std::vector<double>& distance) {
-  if (cell_size.size() < 3) return highest_order;
   std::vector<double> values(cell_size.size(), 1.0);
   for (std::size_t k = distance.size(); k-- > 0;) values[k] = values[k + 1] + distance[k];
   const std::optional<GridConvergence> found = grid_convergence(cell_size, values);
-  return found && std::isfinite(found->order) ? std::clamp(found->order, lowest_order, highest_order)
-                                              : highest_order;
+  // Negated so that an order that is no number is not reliable either.
+  if (!found || !(found->order >= least_reliable_order)) return highest_order;
+  return std::clamp(found->order, lowest_order, highest_order);
 }
 
 /// The error at each size; see `judge_rounding`.

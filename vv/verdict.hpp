@@ -40,11 +40,13 @@ struct GateResult {
   std::string id, metric, statistic, basis, reason;  ///< the metric of curve_spread is the curve
   std::string scope;   ///< the runs it was applied to, for a person: "50G, cpgimp"
   double value = 0.0;  ///< NaN when it could not be measured; then `detail` says why and the gate is red
-  std::string op;      ///< "<=" or ">="
+  std::string op;      ///< "<=" or ">="; "is" of a gate on the class of a run, whose value is the class's place in the list
   double threshold = 0.0;
   bool must_fail = false;
   GateStatus status = GateStatus::fail;
   std::string detail;
+  std::string found = {}, expected = {};  ///< of "is": the class, and those that pass, by name
+  std::string advice = {};                ///< of "is": what to do in such a scene, for a person; may be empty
   /// Nothing is wrong: what could be judged was as it should be.
   bool good() const {
     return status == GateStatus::pass || status == GateStatus::red_as_expected || waits();
