@@ -33,8 +33,7 @@ class TimeStepper {
         flip_(static_cast<Real>(scene.flip_fraction)),
         damping_(static_cast<Real>(scene.damping)),
         largest_half_size_(half_size_limit(scene)),
-        empty_mass_(empty_node_mass_ratio<Real> *
-                    static_cast<Real>(total_mass(particles_) / static_cast<double>(particles_.count()))),
+        empty_mass_(empty_node_mass_ratio<Real> * static_cast<Real>(least_mass(scene))),
         average_(scene, grid_),
         blocks_(grid_, SchemeTraits<scheme>::Shape::nodes_before, particles_),
         workers_(threads) {
@@ -340,6 +339,18 @@ class TimeStepper {
       travel[a] = time_step * motion.velocity[a];
     }
     return travel;
+  }
+
+  /// Of any particle at any time [kg per unit of the absent dimensions].
+  static double least_mass(const Scene& scene) {
+    double least = std::numeric_limits<double>::max();
+    for (const Body& body : scene.bodies) {
+      const Lattice lattice = lattice_of(scene, body);
+      double volume = 1.0;
+      for (std::size_t a = 0; a < Dim; ++a) volume *= lattice.spacing[a];
+      least = std::min(least, body.lightest() * volume);
+    }
+    return least;
   }
 
   /// [m]; without a limit more than any half size can be.

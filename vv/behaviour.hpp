@@ -6,7 +6,7 @@
 /// What became of a run: whether its answer is right, whether it is still moving, whether it broke.
 namespace mpm::vv {
 
-/// From good to bad; a run is of the first class from the end of the list that fits.
+/// From good to bad.
 enum class StabilityClass {
   accurate,     ///< complete, steady, smooth, and right to the accuracy asked for
   inaccurate,   ///< complete, steady and smooth, and wrong
@@ -23,7 +23,7 @@ const char* name_of(StabilityClass stability);
 struct SignalShape {
   double drift = 0.0;    ///< change over the window of the straight line through it, in magnitude
   double ringing = 0.0;  ///< root mean square about that line, single spikes left out
-  double spike = 0.0;    ///< largest distance of a single sample from its neighbours that is no ringing; 0 for none
+  double spike = 0.0;    ///< largest distance of a single sample from the range of its neighbours
 };
 
 /// The shape of a signal over its samples from `from` on, relative to `scale` > 0. Needs eight samples there:
@@ -31,10 +31,14 @@ struct SignalShape {
 SignalShape shape_of_signal(const std::vector<double>& time, const std::vector<double>& value, double from,
                             double scale);
 
-/// How much of a field alternates from particle to particle [-]: the root mean square, weighted, of its distance from
-/// the local straight line (through the neighbours within `reach`, itself included), relative to that of the
-/// field. A field that stays monotone can still alternate about its lines. In order of `place` or not; NaN if
-/// no particle has three neighbours, or the field is zero.
+/// What is left of values once the straight line through the neighbours of each (those within `reach`, itself included, or
+/// the three nearest) has been taken off; weighted least squares, in any order of `place`.
+std::vector<double> rough_part(const std::vector<double>& place, const std::vector<double>& value,
+                               const std::vector<double>& weight, double reach);
+
+/// How much of a field alternates from particle to particle [-]: the root mean square, weighted, of its
+/// `rough_part`, relative to that of the field. A field that stays monotone can still alternate about its lines. 0 of a
+/// field that is zero, or has fewer than four particles: three can lie on any curve.
 double zigzag_of_field(const std::vector<double>& place, const std::vector<double>& value,
                        const std::vector<double>& weight, double reach);
 

@@ -19,6 +19,7 @@
 #include "vv/scene_reader.hpp"
 #include "vv/sufficient_model.hpp"
 #include "vv/sweep.hpp"
+#include "vv/classification.hpp"
 #include "vv/trade_reader.hpp"
 
 namespace mpm::vv {
@@ -62,6 +63,9 @@ std::string read_metric(const JsonPlace& place, const Case& read) {
   if (!tells_of_any_run(name) && name.starts_with("element.") != is_element_case(read)) {
     place.refuse(is_element_case(read) ? "a metric of an element test" : "a metric of a scene",
                  ", which the case does not measure");
+  }
+  if (name.starts_with(class_metric) && !read.classification) {
+    place.refuse("a metric that the case measures", ", which needs the key \"classification\"");
   }
   if (name == "bits_differ" && !read.repeat_on_other_threads && read.repeat_on_threads.empty()) {
     place.refuse("a metric that the case measures",
@@ -215,12 +219,13 @@ void read_object(const JsonPlace& place, const Case& read, Gate& gate) {
 }
 
 /// The keys a gate on a metric or on a curve may have.
-std::vector<std::string> gate_keys(Statistic statistic) {
+std::vector<std::string> gate_keys(Statistic statistic, bool is_of_class) {
   std::vector<std::string> keys = {"id", "statistic", "at_most", "at_least", "basis", "reason", "must_fail"};
   if (is_of_pairs(statistic)) {
     keys.insert(keys.begin() + 1, "pairs");
     return keys;
   }
+  if (is_of_class) return {"id", "metric", "where", "is", "basis", "reason", "advice"};
   keys.insert(keys.begin() + 2, {"across", "where"});
   if (statistic == Statistic::curve_spread)
     keys.insert(keys.begin() + 1, {"curve", "from", "up_to", "within"});
@@ -233,13 +238,21 @@ std::vector<std::string> gate_keys(Statistic statistic) {
 Gate read_gate(const JsonPlace& place, const Case& read) {
   Gate gate;
   gate.statistic = read_statistic(place["statistic"]);
-  place.allow_only(gate_keys(gate.statistic));
+  const bool is_of_class = place["is"].present();
+  place.allow_only(gate_keys(gate.statistic, is_of_class));
   gate.id = place["id"].own_identifier(ids_of(read.gates));
   read_object(place, read, gate);
   gate.where = read_where(place["where"], read.sweep);
   if (is_of_advice(gate) && !gate.where.empty()) place["where"].refuse("no runs of a gate on the whole case");
   read_across(place["across"], read, gate);
-  read_threshold(place, gate);
+  if (is_of_class != (gate.metric == class_metric))
+    place["metric"].refuse(is_of_class ? "the metric \"class\" with the key \"is\""
+                                       : "a metric with a threshold; \"class\" has the key \"is\"");
+  if (is_of_class)
+    gate.classes = read_classes(place["is"]);
+  else
+    read_threshold(place, gate);
+  gate.advice = optional_text(place["advice"]);
   gate.basis = place["basis"].one_of({"theory", "requirement", "fit", "reference_uncertainty"});
   gate.reason = place["reason"].text();
   gate.must_fail = place["must_fail"].flag_or(false);
@@ -535,7 +548,7 @@ void read_parts(Case& read) {
   keys.insert(keys.end(), {"measurements", "pairs", "repeat_on_threads"});
   if (!place["element"].present()) {
     keys.insert(keys.end(), {"metamorphoses", "probes", "snapshots", "cuts"});
-    keys.insert(keys.end(), {"trades", "trade_without", "advice", "rounding"});
+    keys.insert(keys.end(), {"trades", "trade_without", "advice", "classification", "refusals", "rounding"});
   }
   place.allow_only(keys);
   optional_text(place["$schema"]);
@@ -543,7 +556,7 @@ void read_parts(Case& read) {
   const Subject subject = read_subject(place);
   read_checked(subject);  // as written, before anything is swept
   read.sweep = read_sweep(place["sweep"], subject);
-  read.runs = expand(subject, read.sweep, place["trade_without"]);
+  read.runs = expand(subject, read.sweep, place["trade_without"], place["refusals"].flag_or(false));
   require_suited(place["references"], read);
   read.metamorphoses = read_metamorphoses(place["metamorphoses"], read);
   read.probes = read_probes(place["probes"], read.runs);
@@ -559,6 +572,8 @@ void read_parts(Case& read) {
       read_trades(place["trades"], read, [&](const JsonPlace& metric) { return read_metric(metric, read); });
   read.advice = read_advice(place["advice"]);
   read.rounding = read_rounding(place["rounding"], read);
+  read.classification = read_classification(
+      place["classification"], read, [&](const JsonPlace& metric) { return read_metric(metric, read); });
   for (const JsonPlace& gate : place["gates"].some_elements()) read.gates.push_back(read_gate(gate, read));
   const auto asks_for_end = [](const Gate& gate) { return gate.metric == "completed" && !gate.must_fail; };
   if (!read.trades.empty() && std::none_of(read.gates.begin(), read.gates.end(), asks_for_end))
@@ -570,7 +585,9 @@ void read_parts(Case& read) {
     for (const JsonPlace& figure : figures.elements()) read.figures.push_back(read_figure(figure, read));
   }
   // Last, since it depends on all that the case asks for, and what it asks for is checked against the scene as written.
-  for (RunRequest& run : read.runs) choose_model(read, run);
+  for (RunRequest& run : read.runs) {
+    if (run.refusal.empty()) choose_model(read, run);
+  }
 }
 
 /// The second, independent net: what the published schema refuses is refused, whatever the reader above

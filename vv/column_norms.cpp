@@ -5,6 +5,7 @@
 
 #include "reference/column.hpp"
 #include "solver/shape_functions.hpp"
+#include "vv/behaviour.hpp"
 #include "vv/judging.hpp"
 
 namespace mpm::vv {
@@ -27,39 +28,6 @@ Values map(const Values& values, Function&& function) {
   Values result(values.size());
   std::transform(values.begin(), values.end(), result.begin(), function);
   return result;
-}
-
-/// Particles within `reach` of a place, or the three nearest if there are fewer. Positions need not be
-/// sorted.
-std::vector<std::size_t> neighbours(const Values& position, double place, double reach) {
-  std::vector<std::size_t> order(position.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  const auto distance = [&](std::size_t p) { return std::abs(position[p] - place); };
-  const auto within = static_cast<std::size_t>(
-      std::count_if(order.begin(), order.end(), [&](std::size_t p) { return distance(p) <= reach; }));
-  const std::size_t count = std::min(std::max<std::size_t>(within, 3), order.size());
-  std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count), order.end(),
-                    [&](std::size_t a, std::size_t b) { return distance(a) < distance(b); });
-  order.resize(count);
-  return order;
-}
-
-/// Value at `place` of the weighted least-squares line through the chosen points.
-double line_through(const Values& x, const Values& y, const Values& weight,
-                    const std::vector<std::size_t>& chosen, double place) {
-  double w = 0, wx = 0, wy = 0, wxx = 0, wxy = 0;
-  for (std::size_t p : chosen) {
-    const double d = x[p] - place;
-    w += weight[p];
-    wx += weight[p] * d;
-    wy += weight[p] * y[p];
-    wxx += weight[p] * d * d;
-    wxy += weight[p] * d * y[p];
-  }
-  const double determinant = w * wxx - wx * wx;
-  // All points in one place have no line; their mean is the value there.
-  if (!(determinant > 1e-12 * w * wxx)) return wy / w;
-  return (wxx * wy - wx * wxy) / determinant;
 }
 
 /// Width of a column across its axis [m]; 1, without unit, in one dimension.
@@ -202,11 +170,7 @@ void judge_by_equilibrium(ColumnRun& run) {
   set_norms(run.judging, "equilibrium.stress", relative_norms(profile.stress, exact, profile.volume));
 
   const Values error = difference(profile.stress, exact);
-  Values rough(error.size());
-  for (std::size_t p = 0; p < error.size(); ++p) {
-    const auto near = neighbours(profile.position, profile.position[p], 1.5 * run.scene.cell_size);
-    rough[p] = error[p] - line_through(profile.position, error, profile.volume, near, profile.position[p]);
-  }
+  const Values rough = rough_part(profile.position, error, profile.volume, 1.5 * run.scene.cell_size);
   run.judging.set("oscillation.hp",
                   weighted_norm(rough, profile.volume) / weighted_norm(exact, profile.volume));
 

@@ -95,8 +95,8 @@ Row row_of(const GateResult& gate, const std::string& scope) {
           .id = gate.id,
           .scope = scope,
           .metric = metric_of(gate),
-          .value = text_of(gate.value),
-          .threshold = fmt::format("{} {:.4g}", gate.op, gate.threshold),
+          .value = gate.op == "is" ? gate.found : text_of(gate.value),
+          .threshold = gate.op == "is" ? "is " + gate.expected : fmt::format("{} {:.4g}", gate.op, gate.threshold),
           .detail = gate.good() && !gate.must_fail && !gate.waits() ? "" : gate.detail};
 }
 

@@ -9,6 +9,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "vv/classification.hpp"
 #include "vv/curves.hpp"
 #include "vv/field_map.hpp"
 #include "vv/grid_convergence.hpp"
@@ -376,6 +377,7 @@ class Bench {
     keep_trade_metrics(definition, verdict_.trades, verdict_.runs);
     verdict_.rounding = judge_rounding(definition, verdict_.runs);
     keep_rounding_metrics(verdict_.rounding, verdict_.runs);
+    for (RunVerdict& run : verdict_.runs) classify(definition, run);
     build_series();
   }
 
@@ -401,6 +403,11 @@ class Bench {
     const std::vector<std::size_t> runs = selected_runs(definition(), gate.where);
     for (std::size_t run : runs) {
       RunVerdict& target = verdict_.runs[run];
+      if (!gate.classes.empty()) {
+        target.gates.push_back(class_result(definition(), gate, target));
+        covered_[run] = true;
+        continue;
+      }
       target.gates.push_back(
           result_of(gate, scope_of(target.parameters), measure(definition(), target, gate.metric)));
       if (gate.must_fail || gate.metric == completion_metric) covered_[run] = true;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vv/classification.hpp"
 #include "vv/judging.hpp"
 #include "vv/metamorphic.hpp"
 #include "vv/step_cost.hpp"
@@ -61,6 +62,8 @@ std::vector<Metric> general_metrics() {
       {"bits_differ", "-", "", "0 if a repeat on another number of threads ends in the same bits, else 1"});
   all.push_back({"completed", "-", "", "1 if the run ended where it was meant to, else 0"});
   all.push_back({"steps", "-", "", "time steps done"});
+  all.push_back({"energy_ratio", "-", "",
+                 "largest energy of motion over all energy that had gone in; above 1 some came from nowhere"});
   all.push_back({"particle_steps", "-", "", "time steps times particles: the noise-free cost"});
   all.push_back(
       {"counted_bytes", "-", "", "bytes that the steps move between memory and processor, counted"});
@@ -71,6 +74,7 @@ std::vector<Metric> general_metrics() {
 /// What is measured of every run of a scene, whatever it is about.
 void judge_scene(Judging& judging) {
   const Record& record = judging.record;
+  judging.set("energy_ratio", record.largest_energy_ratio);
   judging.set("cell_crossings", static_cast<double>(record.cell_crossings));
   const CountedWork work = counted_work(judging.scene(), record.cost.particle_steps);
   judging.set("particle_steps", work.particle_steps);
@@ -93,6 +97,8 @@ std::vector<Metric> make_catalogue() {
   }
   const std::vector<Metric> general = general_metrics();
   all.insert(all.end(), general.begin(), general.end());
+  const std::vector<Metric>& classes = classification_catalogue();
+  all.insert(all.end(), classes.begin(), classes.end());
   return all;
 }
 
@@ -102,10 +108,6 @@ std::vector<std::string> make_reference_catalogue() {
     all.insert(all.end(), family.references.begin(), family.references.end());
   }
   return all;
-}
-
-bool contains(const std::vector<std::string>& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
 }
 
 }  // namespace

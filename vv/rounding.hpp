@@ -41,8 +41,9 @@ struct RoundingRow {
 /// cells of the coarsest grid, and the distance d in L2, relative to the finer, of each two neighbouring
 /// sizes h_c > h_f. In a method of order p the error at the size h is then h^p d / (h_c^p - h_f^p). The order
 /// is 2, the highest that is expected, unless the three finest sizes tell a lower one; it is never taken as
-/// below 1. Of the estimates by the two neighbours of a size the smaller one counts. All of this makes the
-/// error of the cells rather too small than too large, and so rounding look rather worse beside it.
+/// below 1, and an order below 0.5 tells nothing. Of the estimates by the two neighbours of a size the
+/// smaller one counts. All of this makes the error of the cells rather too small than too large, and so
+/// rounding look rather worse beside it.
 std::vector<RoundingRow> judge_rounding(const Case& definition, const std::vector<RunVerdict>& runs);
 
 /// Keeps the metrics `rounding.displacement`, `rounding.stress` and `rounding.share` of the runs that rows

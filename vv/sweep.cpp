@@ -329,7 +329,14 @@ Json change_of(const SweepAxis& axis, std::size_t chosen) {
   return {{"set", set}, {"remove", remove}};
 }
 
-RunRequest read_run(const Subject& subject, const std::vector<SweepAxis>& sweep, const Choice& choice) {
+/// Takes the scene as written for one that cannot start, and keeps why.
+void keep_refusal(const Refusal& refusal, const Subject& subject, RunRequest& run) {
+  run.refusal = refusal.pointer() + ": expected " + refusal.expected() + ", found " + refusal.found();
+  run.scene = read_checked(subject).scene;
+}
+
+RunRequest read_run(const Subject& subject, const std::vector<SweepAxis>& sweep, const Choice& choice,
+                    bool refusals) {
   RunRequest run;
   Subject resolved = subject;
   std::vector<const Variant*> variants;
@@ -347,7 +354,8 @@ RunRequest read_run(const Subject& subject, const std::vector<SweepAxis>& sweep,
     run.model_request = checked.model;
     run.element = std::move(checked.element);
   } catch (const Refusal& refusal) {
-    refuse_run(refusal, subject, sweep, choice);
+    if (!refusals) refuse_run(refusal, subject, sweep, choice);
+    keep_refusal(refusal, subject, run);
   }
   run.scene_text = std::move(resolved.text);
   return run;
@@ -445,12 +453,12 @@ std::vector<SweepAxis> read_sweep(const JsonPlace& place, const Subject& subject
 }
 
 std::vector<RunRequest> expand(const Subject& subject, const std::vector<SweepAxis>& sweep,
-                               const JsonPlace& without) {
+                               const JsonPlace& without, bool refusals) {
   std::vector<RunRequest> runs;
   Omissions omissions(without, sweep);
   Choice choice(sweep.size(), 0);
   do {
-    if (!omissions.omit(choice)) runs.push_back(read_run(subject, sweep, choice));
+    if (!omissions.omit(choice)) runs.push_back(read_run(subject, sweep, choice, refusals));
   } while (advance(choice, sweep));
   omissions.require_sense(runs);
   return runs;

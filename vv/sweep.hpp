@@ -16,9 +16,10 @@ std::vector<SweepAxis> read_sweep(const JsonPlace& place, const Subject& subject
 
 /// One run for every combination of swept values, the last axis varying fastest, but for those that an entry
 /// of `without` selects, which may be absent. Throws Refusal for the first that cannot start: at the swept
-/// value, or below it, that is to blame; and for an entry that takes nothing away, or the last run there is.
+/// value, or below it, that is to blame; and for an entry that takes nothing away, or the last run there is. With
+/// `refusals` a run that cannot start stays, has the message, and the scene as written in place of its own.
 std::vector<RunRequest> expand(const Subject& subject, const std::vector<SweepAxis>& sweep,
-                               const JsonPlace& without);
+                               const JsonPlace& without, bool refusals = false);
 
 /// The subject with one value of an axis in it, as if there were no other axis; `chosen` counts its values.
 Subject with_value(const SweepAxis& axis, std::size_t chosen, const Subject& subject);

@@ -57,6 +57,7 @@ Json gates_to_json(const std::vector<GateResult>& gates) {
                     {"scope", gate.scope},
                     {"margin", number(margin(gate))},
                     {"detail", gate.detail}});
+    if (gate.op == "is") json.back().update({{"found", gate.found}, {"expected", gate.expected}, {"advice", gate.advice}});
   }
   return json;
 }
@@ -416,7 +417,7 @@ std::string scope_of(const std::vector<std::pair<std::string, Json>>& parameters
 }
 
 double margin(const GateResult& result) {
-  if (result.threshold == 0.0) return std::numeric_limits<double>::quiet_NaN();
+  if (result.threshold == 0.0 || result.op == "is") return std::numeric_limits<double>::quiet_NaN();
   const double room = result.op == "<=" ? result.threshold - result.value : result.value - result.threshold;
   return room / std::abs(result.threshold);
 }

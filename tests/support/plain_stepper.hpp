@@ -45,8 +45,7 @@ class PlainStepper {
         loading_(scene, time_step, particles_),
         seconds_(time_step),
         time_step_(static_cast<Real>(time_step)),
-        empty_mass_(empty_node_mass_ratio<Real> *
-                    static_cast<Real>(total_mass(particles_) / static_cast<double>(particles_.count()))),
+        empty_mass_(empty_node_mass_ratio<Real> * static_cast<Real>(least_mass(scene, particles_))),
         start_(particles_.position),
         travel_(static_cast<std::size_t>(particles_.count())),
         growth_(travel_.size()),
@@ -100,6 +99,13 @@ class PlainStepper {
   }
 
  private:
+  static double least_mass(const Scene& scene, const Particles<Dim, Real>& particles) {
+    std::vector<double> masses;
+    for (std::size_t b = 0; b < scene.bodies.size(); ++b)
+      masses.push_back(scene.bodies[b].lightest() * static_cast<double>(particles.first_volume[b]));
+    return *std::min_element(masses.begin(), masses.end());
+  }
+
   void step() {
     grid_.clear({0, grid_.rows()});
     switch (scene_.update_order) {
