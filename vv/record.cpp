@@ -374,10 +374,12 @@ class Recorder {
     return step % regularly == 0 || (step < regularly && step >= first && (step & (step - 1)) == 0);
   }
 
-  /// A state counts as good as long as no energy has come from nowhere.
+  /// A state counts as good as long as no energy has come from nowhere. A tenth is left to schemes that let it swing about
+  /// its value.
   void keep_good_state() {
     if (!is_time_to_keep_state(simulation_.steps()) || good_step_ == simulation_.steps()) return;
-    if (!(simulation_.monitor().energy_ratio <= 1.0)) return;
+    constexpr double largest_ratio = 1.1;
+    if (!(simulation_.monitor().energy_ratio <= largest_ratio)) return;
     good_state_ = simulation_.particles();
     good_step_ = simulation_.steps();
   }
