@@ -13,7 +13,16 @@ namespace mpm {
 // Places and half sizes in this file are in cells. A Value is a number or lanes of them.
 
 /// Weights of a point particle: S = N(d) [Kiriyama15, section 2].
+///
+/// Exactly on a node a point has no weight at the next one, which it strains by all the same: its gradient there is that of
+/// any point of the cell. A node at a free surface would be empty and at rest, and the particle strained by its own
+/// velocity. So a point is weighed as if it kept `nearest` cells away from nodes. That is the root of the rounding: so
+/// little that nobody sees it, and so much that the node counts as one with mass (see `empty_node_mass_ratio`), in the
+/// plane too, where its share is multiplied by the weight along the other axis.
 struct LinearShape {
+  template <class Real>
+  static constexpr Real nearest = sizeof(Real) == 8 ? Real(0x1p-26) : Real(0x1p-11);
+
   static constexpr int width = 2;         ///< nodes per axis a particle can reach
   static constexpr int nodes_before = 0;  ///< of them below the lower node of its cell
 
@@ -22,7 +31,10 @@ struct LinearShape {
   template <class Value>
   static void evaluate(const Value& place, const Value& /*half_size*/, Scalar<Value> cells_per_length,
                        std::array<Value, width>& weight, std::array<Value, width>& gradient) {
-    weight = {1 - place, place};
+    using std::max, std::min;
+    constexpr Scalar<Value> least = nearest<Scalar<Value>>;
+    const Value inside = max(Value(least), min(Value(1 - least), place));
+    weight = {1 - inside, inside};
     gradient = {Value(-cells_per_length), Value(cells_per_length)};
   }
 };
