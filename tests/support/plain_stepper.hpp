@@ -46,7 +46,7 @@ class PlainStepper {
         loading_(scene, time_step, particles_),
         seconds_(time_step),
         time_step_(static_cast<Real>(time_step)),
-        empty_mass_(empty_node_mass_ratio<Real> * static_cast<Real>(least_mass(scene, particles_))),
+        empty_mass_(SchemeTraits<scheme>::Shape::template empty_share<Real> * static_cast<Real>(least_mass(scene, particles_))),
         start_(particles_.position),
         travel_(static_cast<std::size_t>(particles_.count())),
         growth_(travel_.size()),
