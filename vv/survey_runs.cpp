@@ -159,9 +159,8 @@ class Surveyor {
   /// Along a bar; across a body of two dimensions stress varies in ways that are no zig-zag.
   double zigzag_of(const Profile& profile) const {
     if (request_.scene.dimension != 1) return 0.0;
-    const double zigzag = zigzag_of_field(profile.position, profile.stress, profile.volume,
-                                          line_reach * request_.scene.cell_size);
-    return std::isnan(zigzag) ? 0.0 : zigzag;
+    return zigzag_of_field(profile.position, profile.stress, profile.volume,
+                           line_reach * request_.scene.cell_size);
   }
 
   /// The first run is that of the smallest step: it is what the others are compared with, or tells how exact
