@@ -143,11 +143,12 @@ class Surveyor {
     point.stability = class_of(behaviour, limits);
   }
 
-  /// Of the mean displacement of the first body, from when its loads have settled. A run that came to rest at
-  /// once is steady.
+  /// Of the mean displacement of the first body, over the second half of the time from when its loads have
+  /// settled to the end: the first half is left to the motion that the loads have started. A run that came to
+  /// rest at once is steady.
   SignalShape signal_of(const Record& record) const {
     const History& motion = record.histories.front();
-    const double from = loads_settled_after(request_.scene);
+    const double from = (loads_settled_after(request_.scene) + record.end_time) / 2;
     double scale = 0.0;
     for (const double value : motion.value) scale = std::max(scale, std::abs(value));
     const auto kept =
