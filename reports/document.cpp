@@ -13,9 +13,11 @@
 #include "reports/advice_section.hpp"
 #include "reports/canvas.hpp"
 #include "reports/figures.hpp"
+#include "reports/last_good.hpp"
 #include "reports/model_choices.hpp"
 #include "reports/page_data.hpp"
 #include "reports/performance_section.hpp"
+#include "reports/stability_section.hpp"
 #include "reports/trade_section.hpp"
 #include "reports/trade_svg.hpp"
 #include "reports/validation_section.hpp"
@@ -91,6 +93,7 @@ std::vector<PlacedGate> gates_of(const vv::CaseVerdict& verdict) {
 }
 
 std::string threshold_of(const vv::GateResult& gate) {
+  if (gate.op == "is") return "expected " + escaped(gate.expected);
   return (gate.op == "<="   ? "≤ "
           : gate.op == ">=" ? "≥ "
                             : escaped(gate.op) + " ") +
@@ -116,7 +119,7 @@ data row_of(const PlacedGate& gate) {
                  {"scope", gate.scope},
                  {"metric", gate.result->metric},
                  {"statistic", statistic_of(*gate.result)},
-                 {"value", number_markup(gate.result->value)},
+                 {"value", gate.result->op == "is" ? escaped(gate.result->found) : number_markup(gate.result->value)},
                  {"threshold", threshold_of(*gate.result)},
                  {"margin", margin_of(*gate.result)},
                  {"chip", chip_of(gate.result->status)},
@@ -211,12 +214,18 @@ data gate_groups(const std::vector<PlacedGate>& gates, bool controls) {
 
 /// "at most 0.5", or what a control has to violate: "not at most 0.5".
 std::string bound_of(const vv::GateResult& gate) {
+  if (gate.op == "is") return "expected " + escaped(gate.expected);
   const std::string comparison = gate.op == "<=" ? "at most " : gate.op == ">=" ? "at least " : gate.op + " ";
   return (gate.must_fail ? "not " : "") + escaped(comparison) + number_markup(gate.threshold, 0);
 }
 
 /// "0.31 … 0.44", or the one value there is; "–" without any.
 std::string range_of(const std::vector<const vv::GateResult*>& results) {
+  if (results.front()->op == "is") {
+    std::set<std::string> classes;
+    for (const vv::GateResult* result : results) classes.insert(escaped(result->found));
+    return fmt::format("{}", fmt::join(classes, ", "));
+  }
   double least = std::numeric_limits<double>::infinity(), most = -least;
   for (const vv::GateResult* result : results) {
     if (!std::isfinite(result->value)) continue;
@@ -745,6 +754,36 @@ void set_runs_across_cases(data& page, const vv::CampaignVerdict& verdict) {
   page.set("hashes", hashes);
 }
 
+/// How the failure of one run began, as an example.
+void set_last_good(data& page, const vv::CampaignVerdict& verdict, const std::vector<DrawnFigure>& figures,
+                   int& number) {
+  const FailedRun failed = failed_run_to_draw(verdict);
+  data entries = list();
+  for (const DrawnFigure& figure : figures) {
+    if (!failed.run || figure.case_id != failed.verdict->definition.id || figure.figure_id != last_good_figure) continue;
+    entries << object({{"png", base64(figure.png)},
+                       {"width", std::to_string(figure.pixel_width / 2)},
+                       {"failure", figure.failure},
+                       {"number", std::to_string(number++)},
+                       {"caption", last_good_caption(failed)}});
+  }
+  page.set("last_good", entries);
+}
+
+/// Draws a figure, or says why it could not be.
+DrawnFigure drawn_figure(const std::string& case_id, const std::string& id, const std::function<Picture()>& picture_of) {
+  DrawnFigure figure{case_id, id, "", 0, ""};
+  try {
+    const Picture picture = picture_of();
+    const std::vector<unsigned char> png = picture.canvas.png();
+    figure.png.assign(png.begin(), png.end());
+    figure.pixel_width = picture.canvas.pixel_width();
+  } catch (const std::exception& error) {
+    figure.failure = error.what();
+  }
+  return figure;
+}
+
 data glossary() {
   data entries = list();
   for (const vv::Metric& metric : vv::metric_catalogue())
@@ -762,18 +801,12 @@ std::vector<DrawnFigure> draw_figures(const vv::CampaignVerdict& verdict) {
   for (const vv::CaseVerdict& c : verdict.cases) {
     if (c.status == vv::CaseStatus::not_run) continue;
     for (const vv::FigureRequest& request : c.definition.figures) {
-      DrawnFigure figure{c.definition.id, request.id, "", 0, ""};
-      try {
-        const Picture picture = picture_of(c, request);
-        const std::vector<unsigned char> png = picture.canvas.png();
-        figure.png.assign(png.begin(), png.end());
-        figure.pixel_width = picture.canvas.pixel_width();
-      } catch (const std::exception& error) {
-        figure.failure = error.what();
-      }
-      figures.push_back(std::move(figure));
+      figures.push_back(drawn_figure(c.definition.id, request.id, [&] { return picture_of(c, request); }));
     }
   }
+  const FailedRun failed = failed_run_to_draw(verdict);
+  if (failed.run)
+    figures.push_back(drawn_figure(failed.verdict->definition.id, last_good_figure, [&] { return last_good_picture(failed); }));
   return figures;
 }
 
@@ -802,6 +835,8 @@ std::string report_html(const vv::CampaignVerdict& verdict, const std::vector<Dr
   set_runs_across_cases(page, verdict);
   set_validation_overview(page, verdict);
   set_trade_overview(page, verdict);
+  set_stability_overview(page, verdict);
+  set_last_good(page, verdict, figures, figure_number);
   page.set("trade_script", std::string(trade_script()));
   page.set("performance", performance_section(performance, verdict, performance_figures, figure_number));
   page.set("glossary", glossary());

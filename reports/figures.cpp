@@ -12,6 +12,7 @@
 #include <stdexcept>
 
 #include "reports/figure_parts.hpp"
+#include "reports/stability_figures.hpp"
 #include "reports/trade_figures.hpp"
 #include "reports/typography.hpp"
 #include "reports/validation_figures.hpp"
@@ -1333,6 +1334,7 @@ Plot plot_of(const vv::CaseVerdict& verdict, const vv::FigureRequest& request) {
   if (request.kind == "pairs") return pairs_plot_of(verdict, request);
   if (request.kind == "trend") return trend_plot_of(verdict, request);
   if (request.kind == "trade") return trade_plot_of(verdict, request);
+  if (request.kind == "stability") return stability_plot_of(verdict, request);
   const std::vector<Member> members = members_of(verdict, request);
   const auto panels = distinct(members, [](const Member& m) { return m.panel; });
   Plot plot;

@@ -56,7 +56,8 @@ std::string orders_markup(const std::vector<double>& orders);
 ///   with three phases or more, those of the first and the second bend.
 /// - A measurement that is not to be had is named in the legend, and has no curve.
 /// - Runs that did not complete or lack a curve are named in a note under their panel.
-/// - Kinds comparison, pairs and trend: see reports/validation_figures.hpp; trade: reports/trade_figures.hpp.
+/// - Kinds comparison, pairs and trend: see reports/validation_figures.hpp; trade: reports/trade_figures.hpp;
+///   stability: reports/stability_figures.hpp.
 ///
 /// Throws std::invalid_argument for a kind it does not know.
 Plot plot_of(const vv::CaseVerdict& verdict, const vv::FigureRequest& request);

@@ -35,6 +35,7 @@ Grid<Dim, Real>::Grid(const Scene& scene)
   for (auto* fields : {&momentum, &force, &velocity, &acceleration}) {
     for (Field<Real>& field : *fields) field.setZero(total);
   }
+  for (Field<Real>& field : strain_mass) field.setZero(scene.light_nodes ? total : 0);
 }
 
 template <int Dim, class Real>

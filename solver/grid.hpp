@@ -44,10 +44,15 @@ class Grid {
   // What particles read from nodes.
   std::array<Field<Real>, Dim> velocity;      ///< [m/s]
   std::array<Field<Real>, Dim> acceleration;  ///< [m/s^2]
+  /// The mass by which a node counts as light: its own, or the largest number in components that an edge or a rigid
+  /// body holds [kg per unit of the absent dimensions]. Empty unless the scene treats light nodes.
+  std::array<Field<Real>, Dim> strain_mass;
 
   /// Memory of all arrays [B].
   std::int64_t bytes() const {
-    return static_cast<std::int64_t>((1 + 4 * Dim) * static_cast<std::size_t>(mass.size()) * sizeof(Real));
+    const auto nodes = static_cast<std::size_t>(mass.size());
+    const auto nodes_with_strain_mass = static_cast<std::size_t>(strain_mass[0].size());
+    return static_cast<std::int64_t>(((1 + 4 * Dim) * nodes + Dim * nodes_with_strain_mass) * sizeof(Real));
   }
 
   /// Forgets what was scattered to some rows.

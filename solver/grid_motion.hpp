@@ -30,14 +30,19 @@ class EdgeConditions {
 
   /// Removes momentum and force of the constrained components in some rows.
   void apply(Grid<Dim, Real>& grid, Rows rows) const {
-    for (const Constraint& constraint : constraints_) {
-      const std::int32_t last = std::min(rows.end, constraint.rows.end);
-      for (std::int32_t row = std::max(rows.begin, constraint.rows.begin); row < last; ++row) {
-        const Eigen::Index first = Eigen::Index(row) * grid.row_stride() + constraint.first;
-        grid.momentum[constraint.component].segment(first, constraint.count).setZero();
-        grid.force[constraint.component].segment(first, constraint.count).setZero();
-      }
-    }
+    for_each_stretch(grid, rows, [&](std::size_t component, Eigen::Index first, Eigen::Index count) {
+      grid.momentum[component].segment(first, count).setZero();
+      grid.force[component].segment(first, count).setZero();
+    });
+  }
+
+  /// Sets the mass by which nodes count as light, in some rows.
+  void set_strain_mass(Grid<Dim, Real>& grid, Rows rows) const {
+    const auto [begin, nodes] = grid.place_of(rows);
+    for (Field<Real>& mass : grid.strain_mass) mass.segment(begin, nodes) = grid.mass.segment(begin, nodes);
+    for_each_stretch(grid, rows, [&](std::size_t component, Eigen::Index first, Eigen::Index count) {
+      grid.strain_mass[component].segment(first, count).setConstant(std::numeric_limits<Real>::max());
+    });
   }
 
  private:
@@ -47,6 +52,17 @@ class EdgeConditions {
     Rows rows;
     Eigen::Index first, count;
   };
+
+  /// Calls `visit(component, first node, count)` for the constrained nodes in some rows.
+  template <class Visit>
+  void for_each_stretch(const Grid<Dim, Real>& grid, Rows rows, Visit&& visit) const {
+    for (const Constraint& constraint : constraints_) {
+      const std::int32_t last = std::min(rows.end, constraint.rows.end);
+      for (std::int32_t row = std::max(rows.begin, constraint.rows.begin); row < last; ++row) {
+        visit(constraint.component, Eigen::Index(row) * grid.row_stride() + constraint.first, constraint.count);
+      }
+    }
+  }
 
   void constrain(const Grid<Dim, Real>& grid, int axis, int side, bool all_components) {
     const std::int32_t depth = Grid<Dim, Real>::ghost_layers + 1;

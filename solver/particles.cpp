@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
+#include <utility>
 
 namespace mpm {
 namespace {
@@ -51,6 +53,19 @@ void place(const Scene& scene, const Body& body, const Lattice& lattice, Particl
   }
 }
 
+/// Puts elements in any of their orders, all as likely, the same for a seed on every machine: how the standard
+/// library shuffles is left to its makers [Knuth69, algorithm P].
+template <class Element>
+void shuffle(std::uint64_t seed, std::vector<Element>& elements) {
+  std::mt19937_64 random(seed);
+  for (std::size_t left = elements.size(); left > 1; --left) {
+    const std::uint64_t uneven = (0 - left) % left;  // numbers of the generator that are too many for equal shares
+    std::uint64_t number = random();
+    while (number < uneven) number = random();
+    std::swap(elements[left - 1], elements[number % left]);
+  }
+}
+
 bool has_neo_hookean(const Scene& scene) {
   return std::any_of(scene.bodies.begin(), scene.bodies.end(),
                      [](const Body& body) { return std::holds_alternative<NeoHookean>(body.material); });
@@ -62,6 +77,22 @@ bool has_law_of_volume(const Scene& scene) {
     return std::holds_alternative<NeoHookean>(body.material) ||
            std::holds_alternative<ZhangElastic>(body.material);
   });
+}
+
+/// Gives the low parts of sums their length, after all other fields have theirs.
+template <int Dim, class Real>
+void reserve_low_parts(const Scene& scene, Eigen::Index total, Particles<Dim, Real>& particles) {
+  LowParts<Dim, Real>& low = particles.low;
+  resize(low.position, total);
+  resize(low.displacement, total);
+  resize(low.velocity, total);
+  resize(low.half_size, scene.scheme == Scheme::cpgimp ? total : 0);
+  const bool sums_stress = std::any_of(scene.bodies.begin(), scene.bodies.end(), [](const Body& body) {
+    return std::holds_alternative<LinearElastic>(body.material);
+  });
+  resize(low.stress, sums_stress ? total : 0);
+  resize(low.volume, total);
+  resize(low.deformation_gradient, particles.deformation_gradient[0].size());
 }
 
 /// Gives the fields that only some scenes need their length.
@@ -80,6 +111,7 @@ void reserve_optional_fields(const Scene& scene, Eigen::Index total, Particles<D
   resize(particles.external_force, has_forces ? total : 0);
   const bool grows_late = scene.update_order == UpdateOrder::usf && scene.scheme == Scheme::cpgimp;
   resize(particles.pending, scene.update_order == UpdateOrder::musl || grows_late ? total : 0);
+  if (scene.compensated_sums) reserve_low_parts(scene, total, particles);
 }
 
 }  // namespace
@@ -99,6 +131,7 @@ Lattice lattice_of(const Scene& scene, const Body& body) {
     }
     if (!body.ring || lies_in(*body.ring, center)) lattice.centers.push_back(center);
   }
+  if (scene.shuffle) shuffle(*scene.shuffle, lattice.centers);
   return lattice;
 }
 

@@ -15,6 +15,29 @@ struct ParticleRange {
   Eigen::Index first = 0, last = 0;
 };
 
+/// What rounding has cut off the running sums of the particles so far, to be added with the next increment; all empty
+/// unless the scene compensates its sums. Units and meaning of each are those of the sum.
+template <int Dim, class Real>
+struct LowParts {
+  std::array<Field<Real>, Dim> position, displacement, velocity;
+  std::array<Field<Real>, Dim> half_size;                        ///< of cpGIMP only
+  std::array<Field<Real>, symmetric_components<Dim>> stress;     ///< only with a body whose stress is a sum
+  std::array<Field<Real>, 1> volume;
+  std::array<Field<Real>, Dim * Dim> deformation_gradient;       ///< if the particles have one
+
+  /// Calls `visit(array of fields)` for all of them.
+  template <class Self, class Visit>
+  static void visit_all(Self& self, Visit&& visit) {
+    visit(self.position);
+    visit(self.displacement);
+    visit(self.velocity);
+    visit(self.half_size);
+    visit(self.stress);
+    visit(self.volume);
+    visit(self.deformation_gradient);
+  }
+};
+
 /// The material points, one contiguous array per scalar, bodies one after another. A particle lives in a
 /// slot; slots without one are kept harmless, see `CellBlocks`. Mass is the invariant; density is mass /
 /// volume [Kiriyama15, Eqs. 12 and 13].
@@ -38,6 +61,7 @@ struct Particles {
       deformation_gradient;  ///< row by row [-]; empty unless a neo-Hookean body in 2D needs it
   std::array<Field<Real>, Dim>
       external_force;            ///< beside gravity [N]; empty unless the scene has such forces
+  LowParts<Dim, Real> low;       ///< of the sums
   Field<Real> mass;              ///< [kg per unit of the absent dimensions]
   Field<Real> volume;            ///< current [m^Dim]
   Field<Real> initial_volume;    ///< [m^Dim]; empty unless a body's law follows the volume
@@ -54,6 +78,13 @@ struct Particles {
   template <class Visit>
   void for_each_field(Visit&& visit) {
     visit_fields(*this, visit);
+  }
+
+  /// Forgets what the sums have lost, for particles that are put into another state.
+  void clear_low_parts() {
+    LowParts<Dim, Real>::visit_all(low, [](auto& fields) {
+      for (auto& field : fields) field.setZero();
+    });
   }
 
   /// Memory of all arrays [B].
@@ -81,6 +112,7 @@ struct Particles {
     all_of(self.stress, Real(0));
     all_of(self.strain, Real(0));
     all_of(self.stress_work, Real(0));
+    LowParts<Dim, Real>::visit_all(self.low, [&](auto& fields) { all_of(fields, Real(0)); });
     for (std::size_t k = 0; k < self.deformation_gradient.size(); ++k) {
       if (self.deformation_gradient[k].size() > 0)
         visit(self.deformation_gradient[k], Real(k % (Dim + 1) == 0));
@@ -98,7 +130,7 @@ double total_mass(const Particles<Dim, Real>& particles) {
   return std::accumulate(particles.mass.begin(), particles.mass.end(), 0.0);
 }
 
-/// The centers of a body's particles in their order, and the spacing between them along each axis [m].
+/// The centers of a body's particles in their order, which is at random in a scene that shuffles them, and the spacing between them along each axis [m].
 struct Lattice {
   std::vector<PerAxis> centers;
   PerAxis spacing{};

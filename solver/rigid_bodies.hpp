@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "solver/grid.hpp"
@@ -106,6 +107,17 @@ class RigidBodies {
           grid.velocity[a][pair.in] =
               static_cast<Real>((velocity - (1 - pair.weight) * velocity_of_node(pair.out, a)) / pair.weight);
         }
+      });
+    }
+  }
+
+  /// Nodes that the bodies hold, or whose faces they pull, are never light.
+  void set_strain_mass(Grid<Dim, Real>& grid) const {
+    constexpr Real held = std::numeric_limits<Real>::max();
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+      for_each_held(b, [&](Eigen::Index i, std::size_t a, double) { grid.strain_mass[a][i] = held; });
+      for_each_face(b, [&](const Pair& pair, std::size_t a, double) {
+        grid.strain_mass[a][pair.in] = grid.strain_mass[a][pair.out] = held;
       });
     }
   }

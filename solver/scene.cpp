@@ -88,6 +88,12 @@ void check_method(const Scene& scene) {
       }
     }
   }
+  if (scene.light_nodes) {
+    require(scene.update_order == UpdateOrder::usl, "/light_nodes",
+            "nothing but in update order usl, where the grid's acceleration strains particles", text_of(*scene.light_nodes));
+    require(*scene.light_nodes > 0.0 && *scene.light_nodes <= 1.0, "/light_nodes", "a number above 0, at most 1",
+            text_of(*scene.light_nodes));
+  }
   require(scene.flip_fraction >= 0.0 && scene.flip_fraction <= 1.0, "/flip_fraction", "a number from 0 to 1",
           text_of(scene.flip_fraction));
   require(scene.damping >= 0.0 && scene.damping < 1.0, "/damping", "a number from 0 to below 1",
@@ -354,7 +360,9 @@ void check_against_edges(const Scene& scene, const RigidBody& body, const std::s
             condition == Condition::fixed || (condition == Condition::roller && axis == component);
         require(!holds || !holds_edge(scene, body, axis, side), at_index(place + "/velocity", component),
                 "no motion along an axis in which an edge of the grid holds nodes of the body",
-                text_of(body.velocity[component], "m/s"));
+                text_of(body.velocity[component], "m/s") + ", where " + (axis == 0 ? "x" : "y") +
+                    (side == 0 ? "_lower" : "_upper") + " is " +
+                    (condition == Condition::fixed ? "fixed" : "roller"));
       }
     }
   }

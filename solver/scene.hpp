@@ -234,15 +234,16 @@ struct Scene {
   /// Largest half size of a particle of cpgimp along any axis, in cells, above 0 and at most 1: a domain that would
   /// grow beyond stays as large. Without one, such a run ends with domain_too_large.
   std::optional<double> domain_limit;
-  /// Sums that go over all steps (displacement, position, velocity, stress of elastic laws) are compensated
-  /// [Kahan65]: the part of each increment that rounding cuts off is kept and added with the next.
+  /// Sums that go over all steps (position, displacement, velocity, volume, half size, deformation gradient, and the
+  /// stress of linear elastic bodies) are compensated [Kahan65]: the part of each increment that rounding cuts off is
+  /// kept and added with the next.
   bool compensated_sums = false;
   /// Fills each body in a random order of its particles, the same for the same number; no order is another answer but
   /// for rounding.
   std::optional<std::uint64_t> shuffle;
-  /// Of USL: for the strain, a node of less mass than this fraction of its share of full cells is as slow as one that
-  /// has it, see `strain_velocity`; in (0, 1]. Without one, nodes at a free surface strain the last particle by
-  /// accelerations that it never feels.
+  /// Of USL, in (0, 1]: a node of less mass than this fraction of what a layer of particles across a cell weighs strains
+  /// them as if it were accelerated no more than they are, see `Transfer::slow_light_nodes`. Without one, nodes beyond
+  /// a free surface strain the last particle by accelerations that it never feels.
   std::optional<double> light_nodes;
   /// Whether the run is watched for energy that comes from nowhere. Only a measurement of what that costs has a reason
   /// to switch it off.

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <cmath>
 #include <limits>
 #include <variant>
 #include <vector>
 
 #include "solver/cell_average.hpp"
 #include "solver/cell_blocks.hpp"
+#include "solver/compensated_sum.hpp"
 #include "solver/grid_motion.hpp"
 #include "solver/loading.hpp"
 #include "solver/material.hpp"
@@ -27,13 +29,15 @@ class TimeStepper {
         edges_(scene, grid_),
         rigid_bodies_(scene, grid_, time_step),
         loading_(scene, time_step, particles_),
-        update_stress_(scene.sums_strain, scene.sums_work, scene.objectivity == Objectivity::jaumann),
+        update_stress_(scene),
         order_(scene.update_order),
+        compensates_(scene.compensated_sums),
         time_step_(static_cast<Real>(time_step)),
         flip_(static_cast<Real>(scene.flip_fraction)),
         damping_(static_cast<Real>(scene.damping)),
         largest_half_size_(half_size_limit(scene)),
         empty_mass_(empty_node_mass_ratio<Real> * static_cast<Real>(least_mass(scene))),
+        light_nodes_(light_node_fractions(scene)),
         average_(scene, grid_),
         blocks_(grid_, SchemeTraits<scheme>::Shape::nodes_before, particles_),
         workers_(threads) {
@@ -75,6 +79,7 @@ class TimeStepper {
   template <class Change>
   void change_particles(Change&& change) {
     change(particles_);
+    particles_.clear_low_parts();
     has_fault_ = find_fault().kind != StencilFault::none;
     if (!has_fault_) arrange();
   }
@@ -150,6 +155,9 @@ class TimeStepper {
       }
     });
     rigid_bodies_.set_motion(grid_, empty_mass_);
+    if (light_nodes_.empty()) return;
+    in_rows([&](Rows rows) { edges_.set_strain_mass(grid_, rows); });
+    rigid_bodies_.set_strain_mass(grid_);
   }
 
   void take_velocity_from_momentum() {
@@ -160,7 +168,7 @@ class TimeStepper {
     rigid_bodies_.set_motion(grid_, empty_mass_);
   }
 
-  /// Averages a number of the particles over the cells, `own(block, layer)`.
+  /// Averages a number of the particles over the cells, `own(body, block, layer)`.
   template <class Own>
   void average_over_cells(Own&& own) {
     in_rows([&](Rows rows) { average_.clear(grid_, rows); });
@@ -169,7 +177,7 @@ class TimeStepper {
       Value content(0), volume(0);
       Transfers::for_each_layer(particles_, grid_, block, [&](const Layer& layer) {
         Value volume_of_layer = volume_of(layer.slot);
-        Value content_of_layer = volume_of_layer * own(block, layer);
+        Value content_of_layer = volume_of_layer * own(body, block, layer);
         Transfers::for_each_stray(particles_, grid_, block, layer, [&](int lane, Eigen::Index cell) {
           average_.add(cell, lane_of<Real>(content_of_layer, lane), lane_of<Real>(volume_of_layer, lane));
           set_lane(content_of_layer, lane, Real(0));
@@ -185,8 +193,8 @@ class TimeStepper {
   /// Before the stress is updated, for bodies that share their dilation.
   void average_dilation() {
     if (!average_.is_wanted()) return;
-    average_over_cells([&](const Block& block, const Layer& layer) {
-      return trace<Dim, Value>(own_deformation_of_layer(block, layer).strain_increment);
+    average_over_cells([&](std::size_t body, const Block& block, const Layer& layer) {
+      return trace<Dim, Value>(own_deformation_of_layer(body, block, layer).strain_increment);
     });
   }
 
@@ -195,7 +203,7 @@ class TimeStepper {
   void average_stress() {
     if constexpr (Dim == 2) {
       if (!average_.is_wanted()) return;
-      average_over_cells([&](const Block&, const Layer& layer) {
+      average_over_cells([&](std::size_t, const Block&, const Layer& layer) {
         return (load<Value>(&particles_.stress[0][layer.slot]) +
                 load<Value>(&particles_.stress[1][layer.slot])) /
                2;
@@ -208,7 +216,7 @@ class TimeStepper {
     average_dilation();
     for_each_layer_with_law(
         [&](const auto& law, std::size_t body, const Block& block, const Layer& layer, Log& log) {
-          const Motion motion = Transfers::template gather<true, true>(particles_, grid_, block, layer);
+          const Motion motion = all_motion_of_layer(body, block, layer);
           const Value time_step = time_step_of(layer.slot);
           const Vector<Dim, Value> travel = accelerate_layer(motion, time_step, layer.slot);
           auto deformation = deformation_of<Dim, Value>(motion.gradient, time_step);
@@ -304,14 +312,39 @@ class TimeStepper {
   /// What the stress and the volume of a body's particles follow.
   Deformation<Dim, Value> deformation_of_layer(std::size_t body, const Block& block,
                                                const Layer& layer) const {
-    Deformation<Dim, Value> deformation = own_deformation_of_layer(block, layer);
+    Deformation<Dim, Value> deformation = own_deformation_of_layer(body, block, layer);
     share_dilation(body, block, layer, deformation);
     return deformation;
   }
 
-  Deformation<Dim, Value> own_deformation_of_layer(const Block& block, const Layer& layer) const {
-    const Motion motion = Transfers::template gather<false, true>(particles_, grid_, block, layer);
+  Deformation<Dim, Value> own_deformation_of_layer(std::size_t body, const Block& block, const Layer& layer) const {
+    const Motion motion = light_nodes_.empty()
+                              ? Transfers::template gather<false, true>(particles_, grid_, block, layer)
+                              : all_motion_of_layer(body, block, layer);
     return deformation_of<Dim, Value>(motion.gradient, time_step_of(layer.slot));
+  }
+
+  /// With light nodes as the scene treats them.
+  Motion all_motion_of_layer(std::size_t body, const Block& block, const Layer& layer) const {
+    Motion motion = Transfers::template gather<true, true>(particles_, grid_, block, layer);
+    if (!light_nodes_.empty()) {
+      Transfers::slow_light_nodes(particles_, grid_, block, layer,
+                                  {light_nodes_[body], time_step_, empty_mass_}, motion);
+    }
+    return motion;
+  }
+
+  /// [body] The mass of a node that counts as full over that of a particle: the scene's fraction of a layer of
+  /// particles one cell wide. Empty for scenes that do not treat light nodes.
+  static std::vector<Real> light_node_fractions(const Scene& scene) {
+    std::vector<Real> fractions;
+    if (!scene.light_nodes) return fractions;
+    for (const Body& body : scene.bodies) {
+      double in_cell = 1.0;
+      for (std::size_t a = 0; a < Dim; ++a) in_cell *= body.particles_per_cell[a];
+      fractions.push_back(static_cast<Real>(*scene.light_nodes * std::pow(in_cell, (Dim - 1.0) / Dim)));
+    }
+    return fractions;
   }
 
   /// In a body that asks for it, the mean dilation of its cell takes the place of each particle's own.
@@ -333,9 +366,15 @@ class TimeStepper {
   Vector<Dim, Value> accelerate_layer(const Motion& motion, const Value& time_step, Eigen::Index slot) {
     Vector<Dim, Value> travel;
     for (std::size_t a = 0; a < Dim; ++a) {
-      const Value flip_velocity =
-          load<Value>(&particles_.velocity[a][slot]) + time_step * motion.acceleration[a];
-      store(motion.velocity[a] + flip_ * (flip_velocity - motion.velocity[a]), &particles_.velocity[a][slot]);
+      Real* const velocity = &particles_.velocity[a][slot];
+      const Value old = load<Value>(velocity);
+      if (compensates_) {
+        const Value change = flip_ * (time_step * motion.acceleration[a]) + (1 - flip_) * (motion.velocity[a] - old);
+        add_compensated(change, velocity, &particles_.low.velocity[a][slot]);
+      } else {
+        const Value flip_velocity = old + time_step * motion.acceleration[a];
+        store(motion.velocity[a] + flip_ * (flip_velocity - motion.velocity[a]), velocity);
+      }
       travel[a] = time_step * motion.velocity[a];
     }
     return travel;
@@ -366,9 +405,17 @@ class TimeStepper {
     if constexpr (SchemeTraits<scheme>::updates_half_size) {
       for (std::size_t a = 0; a < Dim; ++a) {
         Real* const half_size = &particles_.half_size[a][slot];
-        const Value grown = load<Value>(half_size) * (1 + deformation.strain_increment[a]);
         const Value largest(largest_half_size_);
-        store(select(grown < largest, grown, largest), half_size);
+        if (compensates_) {
+          Real* const low = &particles_.low.half_size[a][slot];
+          add_compensated(load<Value>(half_size) * deformation.strain_increment[a], half_size, low);
+          const Value grown = load<Value>(half_size);
+          store(select(grown < largest, grown, largest), half_size);
+          store(select(grown < largest, load<Value>(low), Value(0)), low);
+        } else {
+          const Value grown = load<Value>(half_size) * (1 + deformation.strain_increment[a]);
+          store(select(grown < largest, grown, largest), half_size);
+        }
       }
     }
   }
@@ -378,10 +425,17 @@ class TimeStepper {
     Vector<Dim, Value> place;
     auto crosses = Value(0) > Value(0), is_good = Value(0) < load<Value>(&particles_.volume[slot]);
     for (std::size_t a = 0; a < Dim; ++a) {
-      const Value before = load<Value>(&particles_.position[a][slot]), after = before + travel[a];
-      store(after, &particles_.position[a][slot]);
-      Real* const displacement = &particles_.displacement[a][slot];
-      store(load<Value>(displacement) + travel[a], displacement);
+      Real *const position = &particles_.position[a][slot], *const displacement = &particles_.displacement[a][slot];
+      const Value before = load<Value>(position);
+      Value after = before + travel[a];
+      if (compensates_) {
+        add_compensated(travel[a], position, &particles_.low.position[a][slot]);
+        add_compensated(travel[a], displacement, &particles_.low.displacement[a][slot]);
+        after = load<Value>(position);
+      } else {
+        store(after, position);
+        store(load<Value>(displacement) + travel[a], displacement);
+      }
       place[a] = in_cells(grid_, after, a);
       crosses = crosses || floor(place[a]) != floor(in_cells(grid_, before, a));
       constexpr Real ghosts = Grid<Dim, Real>::ghost_layers;
@@ -508,8 +562,10 @@ class TimeStepper {
   StressUpdate<Dim, Real> update_stress_;
   std::vector<typename Laws<Dim, Real>::Any> laws_;
   UpdateOrder order_;
+  bool compensates_;
   Real time_step_, flip_, damping_, largest_half_size_, empty_mass_;
   bool has_fault_ = false, is_disordered_ = false;
+  std::vector<Real> light_nodes_;
   CellAverage<Dim, Real> average_;
   std::int64_t cell_crossings_ = 0, arrangements_ = 0;
   CellBlocks<Dim, Real> blocks_;

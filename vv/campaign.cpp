@@ -129,6 +129,7 @@ struct Job {
   std::filesystem::path file;
   int pool_size;
   int step_threads = 0;               ///< that share the work of each step; 0 leaves it to the pool
+  bool listed = false;                ///< a repeat on a number of threads that the case lists
   double estimate;                    ///< particle-steps
   std::optional<Record> record = {};  ///< once done
   std::atomic<std::int64_t> particle_steps{0};
@@ -320,6 +321,7 @@ class Campaign {
       if (left_out(definition)) continue;
       std::filesystem::create_directories(record_file(options_.out, definition, 0).parent_path());
       if (definition.repeat_on_other_threads) repeats_planned_ += definition.runs.size();
+      repeats_planned_ += definition.repeat_on_threads.size() * definition.runs.size();
       for (std::size_t run = 0; run < definition.runs.size(); ++run) {
         const auto file = record_file(options_.out, definition, run);
         jobs_.push_back(std::make_unique<Job>(definition, run, file, options_.threads));
@@ -330,7 +332,9 @@ class Campaign {
 
   void plan_repeats() {
     for (const auto& first : jobs_) {
-      if (!first->definition->repeat_on_other_threads || !first->record->failure.empty()) continue;
+      if (!first->record->failure.empty()) continue;
+      for (const int threads : first->definition->repeat_on_threads) plan_repeat_on(threads, *first);
+      if (!first->definition->repeat_on_other_threads) continue;
       const int other_size = first->record->threads == 1 ? 2 : 1;
       const auto file = record_file(options_.out, *first->definition, first->run, true);
       repeats_.push_back(std::make_unique<Job>(*first->definition, first->run, file, other_size));
@@ -339,6 +343,14 @@ class Campaign {
         return r.threads != first->record->threads && r.step_threads != first->record->step_threads;
       });
     }
+  }
+
+  void plan_repeat_on(int threads, const Job& first) {
+    const auto file = record_file(options_.out, *first.definition, first.run, true, threads);
+    repeats_.push_back(std::make_unique<Job>(*first.definition, first.run, file, 1));
+    repeats_.back()->step_threads = threads;
+    repeats_.back()->listed = true;
+    reused_ += repeats_.back()->reuse([&](const Record& r) { return r.step_threads == threads; });
   }
 
   void execute(const Jobs& jobs, std::initializer_list<int> pool_sizes) {
@@ -353,13 +365,17 @@ class Campaign {
   }
 
   void collect_records() {
-    std::map<std::pair<const Case*, std::size_t>, const Job*> repeat_of;
-    for (const auto& repeat : repeats_) repeat_of[{repeat->definition, repeat->run}] = repeat.get();
-    for (const auto& job : jobs_) {
-      const auto repeat = repeat_of.find({job->definition, job->run});
-      if (repeat != repeat_of.end()) job->record->repeat_digest = repeat->second->record->digest;
-      records_[job->definition].push_back(std::move(*job->record));
+    std::map<std::pair<const Case*, std::size_t>, Record*> first;
+    for (const auto& job : jobs_) first[{job->definition, job->run}] = &*job->record;
+    for (const auto& repeat : repeats_) {
+      Record& record = *first.at({repeat->definition, repeat->run});
+      const std::string& digest = repeat->record->digest;
+      if (repeat->listed)
+        record.repeats.emplace_back(repeat->step_threads, digest);
+      else
+        record.repeat_digest = digest;
     }
+    for (const auto& job : jobs_) records_[job->definition].push_back(std::move(*job->record));
   }
 
   /// Nothing else runs meanwhile.
@@ -466,7 +482,7 @@ CampaignVerdict run_campaign(const std::vector<Case>& cases, const CampaignOptio
 }
 
 std::filesystem::path record_file(const std::filesystem::path& out, const Case& definition, std::size_t run,
-                                  bool repeat) {
+                                  bool repeat, int step_threads) {
   std::string name = "run";
   if (run < definition.runs.size()) {
     name = slug_of(definition.runs[run]);
@@ -474,7 +490,9 @@ std::filesystem::path record_file(const std::filesystem::path& out, const Case& 
                                          [&](const RunRequest& other) { return slug_of(other) == name; });
     if (namesakes > 1) name += fmt::format("-{}", run);
   }
-  return out / "records" / definition.id / (name + (repeat ? ".repeat.json" : ".json"));
+  if (repeat) name += ".repeat";
+  if (step_threads > 0) name += fmt::format("-{}", step_threads);
+  return out / "records" / definition.id / (name + ".json");
 }
 
 double estimated_particle_steps(const Scene& scene) {

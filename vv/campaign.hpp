@@ -33,7 +33,8 @@ class Interrupted : public std::runtime_error {
 /// same `program_hash`; a record file that cannot be read, or whose text was altered, is ignored and the run
 /// redone. A run that throws becomes a failed run, with the reason, and is not stored. Runs of cases with
 /// `repeat_on_other_threads` are executed again in a pool of another size (two threads instead of one, else
-/// one).
+/// one), and those with `repeat_on_threads` once more for each number there, one run at a time with so many threads
+/// for its steps.
 ///
 /// Once every run is recorded, those of cases with trades are timed, see `CaseTiming`, below out/timings.
 ///
@@ -43,9 +44,10 @@ CampaignVerdict run_campaign(const std::vector<Case>& cases, const CampaignOptio
                              const Execute& execute = simulate,
                              const TimeSteps& time_steps = time_first_steps);
 
-/// Where the record of one run is stored. The name tells the swept values and is unique within the case.
+/// Where the record of one run is stored. The name tells the swept values and is unique within the case. A repeat has
+/// one of its own; with a number of step threads, if it was asked for on that many.
 std::filesystem::path record_file(const std::filesystem::path& out, const Case& definition, std::size_t run,
-                                  bool repeat = false);
+                                  bool repeat = false, int step_threads = 0);
 
 /// A rough particle-steps count before the run, for ordering and progress: never below 1.
 double estimated_particle_steps(const Scene& scene);

@@ -14,6 +14,8 @@
 #include "vv/metamorphic.hpp"
 #include "vv/norms.hpp"
 #include "vv/probe_reader.hpp"
+#include "vv/rounding.hpp"
+#include "vv/rounding_reader.hpp"
 #include "vv/scene_reader.hpp"
 #include "vv/sufficient_model.hpp"
 #include "vv/sweep.hpp"
@@ -39,12 +41,13 @@ std::vector<std::string> metric_names(const Case& read) {
   for (const Reading& reading : read.readings) names.push_back(metric_of(reading).name);
   for (const std::string& name : comparison_metric_names(read.measurements)) names.push_back(name);
   for (const std::string& name : trade_metric_names(read.trades)) names.push_back(name);
+  for (const std::string& name : rounding_metric_names(read.rounding)) names.push_back(name);
   return names;
 }
 
 std::string read_metric(const JsonPlace& place, const Case& read) {
   const std::string name = place.one_of(metric_names(read));
-  for (const char* prefix : {reading_prefix, measured_prefix, trade_prefix})
+  for (const char* prefix : {reading_prefix, measured_prefix, trade_prefix, rounding_prefix})
     if (name.starts_with(prefix)) return name;
   const Metric& metric = *std::find_if(metric_catalogue().begin(), metric_catalogue().end(),
                                        [&](const Metric& m) { return m.name == name; });
@@ -64,8 +67,9 @@ std::string read_metric(const JsonPlace& place, const Case& read) {
   if (name.starts_with(class_metric) && !read.classification) {
     place.refuse("a metric that the case measures", ", which needs the key \"classification\"");
   }
-  if (name == "bits_differ" && !read.repeat_on_other_threads) {
-    place.refuse("a metric that the case measures", ", which needs repeat_on_other_threads to be true");
+  if (name == "bits_differ" && !read.repeat_on_other_threads && read.repeat_on_threads.empty()) {
+    place.refuse("a metric that the case measures",
+                 ", which needs repeat_on_other_threads to be true or repeat_on_threads");
   }
   return name;
 }
@@ -265,6 +269,7 @@ std::vector<std::string> figure_keys(const std::string& kind) {
     return {"id", "kind", "caption", "panels", "where", "over", "metrics", "references"};
   if (kind == "pairs") return {"id", "kind", "caption", "pairs"};
   if (kind == "trade") return {"id", "kind", "caption", "trade"};
+  if (kind == "stability") return {"id", "kind", "caption", "panels", "series", "where", "map_axis"};
   std::vector<std::string> keys = {"id", "kind", "caption", "panels", "series", "where"};
   if (kind == "comparison") keys.push_back("measurements");
   if (kind == "trend") keys.insert(keys.end(), {"over", "abscissa", "metrics", "published"});
@@ -357,6 +362,7 @@ void read_layout(const JsonPlace& place, const Case& read, FigureRequest& figure
     return parameter;
   };
   if (contains({"convergence", "decomposition", "trend"}, figure.kind)) figure.over = read_role("over");
+  if (place["map_axis"].present()) figure.map_axis = read_role("map_axis");
   if (place["panels"].present()) figure.panels = read_role("panels");
   if (place["series"].present()) figure.series = read_role("series");
 }
@@ -395,7 +401,7 @@ FigureRequest read_figure(const JsonPlace& place, const Case& read) {
       is_element_case(read) ? std::vector<std::string>{"bars", "curves", "decomposition", "comparison"}
                             : std::vector<std::string>{"profiles", "convergence", "bars", "history", "curves",
                                                        "fields", "model", "decomposition", "comparison",
-                                                       "pairs", "trend", "trade"});
+                                                       "pairs", "trend", "trade", "stability"});
   place.allow_only(figure_keys(figure.kind));
   figure.id = place["id"].own_identifier(ids_of(read.figures));
   figure.caption = place["caption"].text();
@@ -416,6 +422,8 @@ FigureRequest read_figure(const JsonPlace& place, const Case& read) {
     require_two_dimensions(place["kind"], read);
   } else if (figure.kind == "trade") {
     figure.trade = read_trade_title(place, read);
+  } else if (figure.kind == "stability") {
+    if (!read.survey) place["kind"].refuse("a figure of the case's surveys of time steps, of which it has none");
   } else if (figure.kind == "pairs") {
     figure.pairs = read_some_names(place["pairs"], ids_of(read.pairs), "pairs of the case, which has none");
   } else if (figure.kind != "comparison") {
@@ -463,6 +471,20 @@ Claim read_claim(const JsonPlace& place, const Case& read) {
   return claim;
 }
 
+/// Numbers of threads, each once; none if `place` is absent.
+std::vector<int> read_thread_counts(const JsonPlace& place) {
+  constexpr int most_threads = 64;
+  std::vector<int> counts;
+  if (!place.present()) return counts;
+  for (const JsonPlace& element : place.some_elements()) {
+    const int count = element.integer();
+    if (count < 1 || count > most_threads) element.refuse("a number of threads from 1 to " + std::to_string(most_threads));
+    if (std::find(counts.begin(), counts.end(), count) != counts.end()) element.refuse("each number once", " again");
+    counts.push_back(count);
+  }
+  return counts;
+}
+
 void read_description(const JsonPlace& place, Case& read) {
   read.id = place["id"].identifier();
   read.title = place["title"].text();
@@ -473,6 +495,7 @@ void read_description(const JsonPlace& place, Case& read) {
   read.study = place["study"].flag_or(false);
   if (read.study && read.quick) place["quick"].refuse("false for a study, which takes long");
   read.repeat_on_other_threads = place["repeat_on_other_threads"].flag_or(false);
+  read.repeat_on_threads = read_thread_counts(place["repeat_on_threads"]);
   read.references = read_names(place["references"], reference_catalogue());
 }
 
@@ -522,10 +545,10 @@ void read_parts(Case& read) {
       "claims",  "notes",   "quick", "study",           "repeat_on_other_threads",
       "scene",   "element", "sweep", "references",      "readings",
       "gates",   "figures"};
-  keys.insert(keys.end(), {"measurements", "pairs"});
+  keys.insert(keys.end(), {"measurements", "pairs", "repeat_on_threads"});
   if (!place["element"].present()) {
     keys.insert(keys.end(), {"metamorphoses", "probes", "snapshots", "cuts"});
-    keys.insert(keys.end(), {"trades", "trade_without", "advice", "classification", "refusals"});
+    keys.insert(keys.end(), {"trades", "trade_without", "advice", "classification", "refusals", "rounding"});
   }
   place.allow_only(keys);
   optional_text(place["$schema"]);
@@ -548,6 +571,7 @@ void read_parts(Case& read) {
   read.trades =
       read_trades(place["trades"], read, [&](const JsonPlace& metric) { return read_metric(metric, read); });
   read.advice = read_advice(place["advice"]);
+  read.rounding = read_rounding(place["rounding"], read);
   read.classification = read_classification(
       place["classification"], read, [&](const JsonPlace& metric) { return read_metric(metric, read); });
   for (const JsonPlace& gate : place["gates"].some_elements()) read.gates.push_back(read_gate(gate, read));

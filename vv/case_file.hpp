@@ -288,6 +288,7 @@ struct Case {
   bool quick = true;                        ///< part of `report --quick`
   bool study = false;                       ///< too long for the tests; the full report runs it
   bool repeat_on_other_threads = false;     ///< run everything a second time on another number of threads: `bits_differ`
+  std::vector<int> repeat_on_threads = {};  ///< the same on each of these numbers of threads for the work of a step
   std::vector<std::string> metamorphoses;   ///< other descriptions to run every scene in: names in vv/metamorphic.hpp
   std::vector<std::string> references;      ///< reference solutions to judge against, of `reference_catalogue()`
   std::vector<SweepAxis> sweep;

@@ -318,6 +318,15 @@ void add_cuts(const Case& definition, const Record& record, std::vector<Curve>& 
   }
 }
 
+/// Of the run's repeats; nothing without any.
+std::optional<double> repeats_that_differ(const Record& record) {
+  std::vector<std::string> digests;
+  if (!record.repeat_digest.empty()) digests.push_back(record.repeat_digest);
+  for (const auto& [threads, digest] : record.repeats) digests.push_back(digest);
+  if (digests.empty()) return std::nullopt;
+  return std::count_if(digests.begin(), digests.end(), [&](const std::string& digest) { return digest != record.digest; });
+}
+
 RunVerdict judged_run(const Case& definition, const RunRequest& request, Record record,
                       const Judge& judge_run) {
   RunVerdict run;
@@ -332,9 +341,8 @@ RunVerdict judged_run(const Case& definition, const RunRequest& request, Record 
         const ReadOff value = read_off(reading, run.curves);
         if (value.lack.empty()) run.metrics[metric_of(reading).name] = value.value;
       }
-      if (!record.repeat_digest.empty()) {
-        run.metrics["bits_differ"] = record.digest == record.repeat_digest ? 0.0 : 1.0;
-      }
+      if (const std::optional<double> differing = repeats_that_differ(record))
+        run.metrics["bits_differ"] = *differing;
     } catch (const std::exception& error) {
       run.metrics.clear();
       record.failure = std::string("could not be judged: ") + error.what();
@@ -367,6 +375,8 @@ class Bench {
     verdict_.pairs = judge_pairs(verdict_);
     verdict_.trades = judge_trades(definition, verdict_.runs, timings);
     keep_trade_metrics(definition, verdict_.trades, verdict_.runs);
+    verdict_.rounding = judge_rounding(definition, verdict_.runs);
+    keep_rounding_metrics(verdict_.rounding, verdict_.runs);
     for (RunVerdict& run : verdict_.runs) classify(definition, run);
     build_series();
   }

@@ -30,8 +30,7 @@ using Judge = std::function<Judgement(const Case&, const RunRequest&, const Reco
 /// - Gates on advice are left to `judge_advice` of vv/advice.hpp, which needs the other cases' verdicts.
 /// - A gate that matches no run, a case without runs and a case without gates are failures.
 /// - Every run that no control and no gate on the metric `completed` covers gets the gate `run_completed`.
-/// - The metric `bits_differ` is 0 when the repeat of the run has the same digest, 1 when it has not, absent
-///   without a repeat.
+/// - The metric `bits_differ` counts the repeats of the run that have another digest; absent without a repeat.
 ///
 /// `timings` are for the case's trades, one a run or none; no gate sees them. Throws std::invalid_argument
 /// when records or timings are not one per run.

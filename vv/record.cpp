@@ -440,10 +440,12 @@ class Recorder {
     return step % regularly == 0 || (step < regularly && step >= first && (step & (step - 1)) == 0);
   }
 
-  /// A state counts as good as long as no energy has come from nowhere.
+  /// A state counts as good as long as no energy has come from nowhere. A tenth is left to schemes that let it swing about
+  /// its value.
   void keep_good_state() {
     if (!is_time_to_keep_state(simulation_.steps()) || good_step_ == simulation_.steps()) return;
-    if (!(simulation_.monitor().energy_ratio <= 1.0)) return;
+    constexpr double largest_ratio = 1.1;
+    if (!(simulation_.monitor().energy_ratio <= largest_ratio)) return;
     good_state_ = simulation_.particles();
     good_step_ = simulation_.steps();
   }
@@ -523,7 +525,9 @@ class Recorder {
     record.cell_crossings = simulation_.cell_crossings();
     record.relative_mass_change = mass_change(end);
     record.profile = profile_of(end);
-    for (Sampler& sampler : samplers_) sampler.sample(now, simulation_.time_step());
+    // A broken state may have no number left to sample; how it broke is told apart from the histories.
+    const bool broken = record.outcome.particle >= 0;
+    for (Sampler& sampler : samplers_) sampler.sample(now, simulation_.time_step(), !broken);
     take_last_snapshots(now);
     record.snapshots = std::move(snapshots_);
     for (Sampler& sampler : samplers_) record.histories.push_back(std::move(sampler).history());

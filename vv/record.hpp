@@ -75,6 +75,9 @@ struct Record {
   std::int64_t non_finite_values = 0;  ///< in the final state of all particles, every field and component
   std::string digest;                 ///< of the bits of the final state; equal digests mean equal bits
   std::string repeat_digest;  ///< the same of the repeat on another number of threads; empty without one
+  /// Number of threads that shared the work of each step, and digest, of each further repeat. Not stored: these repeats
+  /// have records of their own.
+  std::vector<std::pair<int, std::string>> repeats;
   Profile profile;
   std::vector<History> histories;
   /// Energy of motion over all energy that ever went in, at its largest [-]; see `Monitor`.

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 #include <variant>
@@ -297,11 +298,21 @@ ModelRequest read_model(const JsonPlace& place) {
   return request;
 }
 
+/// The number of a random order of particles, if they have one.
+std::optional<std::uint64_t> read_shuffle(const JsonPlace& place) {
+  if (!place.present()) return std::nullopt;
+  place.allow_only({"shuffle"});
+  const int seed = place["shuffle"].integer();
+  if (seed < 0) place["shuffle"].refuse("a whole number, zero or above");
+  return static_cast<std::uint64_t>(seed);
+}
+
 /// The scene as written: types, keys and units are right, but the values may be impossible.
 Scene read_scene(const JsonPlace& place) {
   place.allow_only({"dimension", "scheme", "update_order", "precision", "objectivity", "flip_fraction",
                     "damping", "grid", "bodies", "rigid_bodies", "surface_loads", "driven_motion",
-                    "model", "sums_strain", "sums_work", "domain_limit", "gravity", "time_step", "termination"});
+                    "model", "sums_strain", "sums_work", "domain_limit", "compensated_sums", "particle_order",
+                    "light_nodes", "gravity", "time_step", "termination"});
   Scene scene;
   scene.dimension = read_dimension(place["dimension"]);
   scene.scheme = place["scheme"].choice<Scheme>(
@@ -332,6 +343,9 @@ Scene read_scene(const JsonPlace& place) {
   scene.sums_strain = place["sums_strain"].flag_or(false);
   scene.sums_work = place["sums_work"].flag_or(false);
   if (const JsonPlace limit = place["domain_limit"]; limit.present()) scene.domain_limit = limit.number();
+  scene.compensated_sums = place["compensated_sums"].flag_or(false);
+  scene.shuffle = read_shuffle(place["particle_order"]);
+  if (const JsonPlace light = place["light_nodes"]; light.present()) scene.light_nodes = light.number();
   scene.gravity = read_gravity(place["gravity"], axes_of(scene));
   scene.time_step = read_time_step(place["time_step"]);
   scene.termination = read_termination(place["termination"], scene.dimension);

@@ -192,6 +192,13 @@ Json trades_to_json(const CaseVerdict& verdict) {
   return json;
 }
 
+Json repeats_to_json(const Record& record) {
+  Json json = Json::array();
+  for (const auto& [threads, digest] : record.repeats)
+    json.push_back({{"step_threads", threads}, {"digest", digest}});
+  return json;
+}
+
 Json run_to_json(const RunVerdict& run) {
   const Record& record = run.record;
   return {{"parameters", parameters_to_json(run.parameters)},
@@ -213,7 +220,27 @@ Json run_to_json(const RunVerdict& run) {
           {"input_hash", record.input_hash},
           {"program_hash", record.program_hash},
           {"digest", record.digest},
-          {"repeat_digest", record.repeat_digest}};
+          {"repeat_digest", record.repeat_digest},
+          {"repeats", repeats_to_json(record)}};
+}
+
+Json rounding_to_json(const std::vector<RoundingRow>& rows) {
+  Json json = Json::array();
+  for (const RoundingRow& row : rows) {
+    const std::pair<const char*, double> facts[] = {{"displacement", row.displacement},
+                                                    {"stress", row.stress},
+                                                    {"digits_of_displacement", row.digits_of_displacement},
+                                                    {"digits_of_stress", row.digits_of_stress},
+                                                    {"cells_of_displacement", row.cells_of_displacement},
+                                                    {"cells_of_stress", row.cells_of_stress},
+                                                    {"share", row.share}};
+    Json entry = {{"run", row.run}, {"baseline", row.baseline}, {"bits_equal", row.bits_equal}};
+    for (const auto& [name, value] : facts) entry[name] = row.lack.empty() ? number(value) : Json(nullptr);
+    entry["enough"] = row.is_enough();
+    entry["lack"] = row.lack;
+    json.push_back(std::move(entry));
+  }
+  return json;
 }
 
 Json convergence_by_name(const std::map<std::string, GridConvergence>& found) {
@@ -286,6 +313,7 @@ Json case_to_json(const CaseVerdict& verdict) {
                {"pairs", pairs_to_json(verdict.pairs)},
                {"trades", trades_to_json(verdict)},
                {"advice", advice_to_json(verdict.advice)},
+               {"rounding", rounding_to_json(verdict.rounding)},
                {"gates", gates_to_json(verdict.gates)}};
   add_texts(verdict.definition, json);
   for (const RunVerdict& run : verdict.runs) json["runs"].push_back(run_to_json(run));

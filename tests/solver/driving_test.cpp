@@ -536,7 +536,8 @@ ParticleFields sheared(const Material& material, double angle, int steps, double
   scene.bodies[0].initial_stress = UniformStress{.xx = -200.0, .yy = -200.0, .zz = -200.0, .xy = 0.0};
   scene.sums_work = true;
   Particles<2, double> particles = fill_bodies<2, double>(scene, true);
-  const StressUpdate<2, double> update(false, true, turns_stress);
+  if (turns_stress) scene.objectivity = Objectivity::jaumann;
+  const StressUpdate<2, double> update(scene);
   using Value = Lanes<double>;
   Deformation<2, Value> step{};
   for (Value& component : step.strain_increment) component = Value(0);

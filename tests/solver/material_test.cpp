@@ -71,7 +71,7 @@ TEST(Laws, UpdateVolumeBeforeStress) {
   Particles<1, double> particles;
   particles.stress[0] = particles.volume = particles.initial_volume = Field<double>::Ones(lane_count<double>);
   const Deformation<1, Lanes<double>> squeeze{{Lanes<double>(-0.19)}, Lanes<double>(0.0)};
-  const StressUpdate<1, double> update_stress(false, false, false);
+  const StressUpdate<1, double> update_stress{Scene{}};
   update_stress(ZhangElasticLaw<double>(ZhangElastic{1e7}), squeeze, 0, particles);
   for (Eigen::Index lane = 0; lane < lane_count<double>; ++lane) {
     EXPECT_NEAR(particles.volume[lane], 0.81, 1e-15);

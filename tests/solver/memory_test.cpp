@@ -70,6 +70,8 @@ TEST(Memory, is_all_that_the_heap_has_given) {
     for (int variant = 0; variant < 4; ++variant) {
       if (variant == 1) scene.sums_work = scene.sums_strain = true;
       if (variant == 2) scene.surface_loads = {{"column", dimension - 1, 1, 0.0, 1.0, {-1.0, -1.0}, 0.0}};
+      if (variant == 2) scene.compensated_sums = true;
+      if (variant == 3) scene.light_nodes = 0.5;
       if (variant == 3 && dimension == 2) scene.bodies[0].locking_control = LockingControl::cell_average;
       const double before = live();
       const Simulation simulation(scene);
@@ -108,6 +110,14 @@ TEST(Memory, grows_by_what_a_scene_asks_for_and_no_more) {
     scene = plain;
     scene.bodies[0].material = NeoHookean{1e7, 0.0};
     expect_numbers_more("neo-Hookean", dimension == 1 ? 1 : 5, scene);
+    scene = plain;
+    scene.compensated_sums = true;  // place, displacement, velocity, stress, volume
+    expect_numbers_more("compensated sums", 3 * d + stress + 1, scene);
+    scene.bodies[0].material = NeoHookean{1e7, 0.0};  // no sum of stress, but one of the deformation gradient
+    expect_numbers_more("compensated sums of rubber", 3 * d + 1 + (dimension == 1 ? 1 : 5 + 4), scene);
+    scene = plain;
+    scene.shuffle = 1;
+    expect_numbers_more("shuffled", 0, scene);
     if (dimension == 1) continue;
     scene = plain;
     scene.bodies[0].material = MohrCoulomb{1e7, 0.0, 0.3, 1e3, 0.0};

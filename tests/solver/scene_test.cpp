@@ -118,6 +118,17 @@ const std::vector<Impossible>& impossible_scenes() {
       {"/precision", "a known precision", "7", [](Scene& s) { s.precision = static_cast<Precision>(7); }},
       {"/domain_limit", "above 0, at most 1", "1.1", [](Scene& s) { s.domain_limit = 1.1; }},
       {"/domain_limit", "above 0, at most 1", "0", [](Scene& s) { s.domain_limit = 0.0; }},
+      {"/light_nodes", "usl", "0.5", [](Scene& s) { s.light_nodes = 0.5; }},
+      {"/light_nodes", "above 0, at most 1", "0",
+       [](Scene& s) {
+         s.update_order = UpdateOrder::usl;
+         s.light_nodes = 0.0;
+       }},
+      {"/light_nodes", "above 0, at most 1", "1.5",
+       [](Scene& s) {
+         s.update_order = UpdateOrder::usl;
+         s.light_nodes = 1.5;
+       }},
       {"/domain_limit", "half size", "0.01", [](Scene& s) { s.domain_limit = 0.01; }},
       {"/flip_fraction", "0 to 1", "-0.1", [](Scene& s) { s.flip_fraction = -0.1; }},
       {"/flip_fraction", "0 to 1", "1.1", [](Scene& s) { s.flip_fraction = 1.1; }},

@@ -114,6 +114,8 @@ class PlainStepper {
         send_momentum();
         send_forces();
         move_grid();
+        find_strains();
+        if (scene_.light_nodes) slow_light_nodes();
         accelerate_particles();
         update_stresses();
         break;
@@ -121,6 +123,7 @@ class PlainStepper {
         send_mass();
         send_momentum();
         find_velocities();
+        find_strains();
         update_stresses();
         send_forces();
         move_grid();
@@ -135,6 +138,7 @@ class PlainStepper {
         grid_.clear_momentum({0, grid_.rows()});
         send_momentum();
         find_velocities();
+        find_strains();
         update_stresses();
         break;
     }
@@ -252,7 +256,6 @@ class PlainStepper {
   using Matrix = std::array<std::array<Real, Dim>, Dim>;
 
   void update_stresses() {
-    find_strains();
     share_dilations();
     for (Eigen::Index p = 0; p < particles_.count(); ++p) {
       const auto& strain = strain_[static_cast<std::size_t>(p)];
@@ -304,10 +307,43 @@ class PlainStepper {
             growth[a][b] += time_step_ * grid_.velocity[a][seen.node] * seen.gradient[b];
         }
       }
-      auto& strain = strain_[static_cast<std::size_t>(p)];
-      strain = {};
-      for (std::size_t a = 0; a < Dim; ++a) strain[a] = growth[a][a];
-      if constexpr (Dim == 2) strain[3] = (growth[0][1] + growth[1][0]) / 2;
+      find_strain(p);
+    });
+  }
+
+  void find_strain(Eigen::Index p) {
+    const Matrix& growth = growth_[static_cast<std::size_t>(p)];
+    auto& strain = strain_[static_cast<std::size_t>(p)];
+    strain = {};
+    for (std::size_t a = 0; a < Dim; ++a) strain[a] = growth[a][a];
+    if constexpr (Dim == 2) strain[3] = (growth[0][1] + growth[1][0]) / 2;
+  }
+
+  /// A node that weighs less than `light_nodes` of a layer of the particle's body, one cell wide, is for the strain
+  /// partly accelerated as the particle is; an empty one moves with it. Nodes that are held are not light.
+  void slow_light_nodes() {
+    edges_.set_strain_mass(grid_, {0, grid_.rows()});
+    rigid_bodies_.set_strain_mass(grid_);
+    for_each_particle([&](Eigen::Index p, const Nodes& nodes) {
+      const auto& in_cell = body_at(p).particles_per_cell;
+      const double across = Dim == 1 ? 1.0 : std::sqrt(in_cell[0] * in_cell[1]);
+      const Real full = static_cast<Real>(*scene_.light_nodes * across) * particles_.mass[p];
+      for (std::size_t a = 0; a < Dim; ++a) {
+        Real felt(0);
+        for (const auto& seen : nodes) felt += seen.weight * grid_.acceleration[a][seen.node];
+        for (const auto& seen : nodes) {
+          const Real share = std::min(grid_.strain_mass[a][seen.node] / full, Real(1));
+          if (share == 1) continue;
+          const Real before = grid_.velocity[a][seen.node] - time_step_ * grid_.acceleration[a][seen.node];
+          const Real start = grid_.strain_mass[a][seen.node] > empty_mass_ ? before : particles_.velocity[a][p];
+          const Real velocity =
+              start + time_step_ * (share * grid_.acceleration[a][seen.node] + (1 - share) * felt);
+          for (std::size_t b = 0; b < Dim; ++b)
+            growth_[static_cast<std::size_t>(p)][a][b] +=
+                time_step_ * (velocity - grid_.velocity[a][seen.node]) * seen.gradient[b];
+        }
+      }
+      find_strain(p);
     });
   }
 

@@ -71,6 +71,7 @@ class RandomScene {
     scene.termination = AtTime{1e9};
     if (scene.dimension == 2) draw_locking_control(scene);
     if (!scene.driven_motion) draw_inertia(scene);
+    draw_numerics(scene);
     return scene;
   }
 
@@ -173,6 +174,13 @@ class RandomScene {
         body.density_ramp->stages.insert(body.density_ramp->stages.begin(), {body.density * between(0.8, 1.2), 0.03});
       if (chance(0.3)) body.inertia = body.density * between(0.8, 1.5);
     }
+  }
+
+  /// After all else, likewise.
+  void draw_numerics(Scene& scene) {
+    scene.compensated_sums = chance(0.3);
+    if (chance(0.3)) scene.shuffle = random_();
+    if (scene.update_order == UpdateOrder::usl && chance(0.6)) scene.light_nodes = between(0.1, 1.0);
   }
 
   void draw_gravity(Scene& scene) {

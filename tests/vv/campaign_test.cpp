@@ -233,6 +233,39 @@ TEST(Campaign, RepeatsOnAnotherNumberOfThreads) {
   }
 }
 
+TEST(Campaign, RepeatsOnEveryNumberOfThreadsListed) {
+  Case definition = columns("some", {10, 20});
+  definition.repeat_on_threads = {2, 3, 8};
+  const tests::ScratchDirectory scratch;
+  const CampaignVerdict verdict = run_campaign({definition}, {.out = scratch.path()});
+  for (std::size_t run : {0u, 1u}) {
+    const RunVerdict& judged = verdict.cases[0].runs[run];
+    EXPECT_EQ(judged.metrics.at("bits_differ"), 0.0);
+    EXPECT_TRUE(judged.record.repeat_digest.empty());
+    ASSERT_EQ(judged.record.repeats.size(), 3u);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int threads = definition.repeat_on_threads[k];
+      EXPECT_EQ(judged.record.repeats[k], std::pair(threads, judged.record.digest));
+      const Json repeat = Json::parse(text_of(record_file(scratch.path(), definition, run, true, threads)))["record"];
+      EXPECT_EQ(repeat["step_threads"], threads);
+    }
+  }
+  EXPECT_EQ(run_campaign({definition}, {.out = scratch.path()}).reused, 8);
+}
+
+TEST(Campaign, CountsTheRepeatsThatDiffer) {
+  const tests::ScratchDirectory scratch;
+  Case definition = columns("some", {10});
+  definition.repeat_on_threads = {2, 3, 8};
+  const Execute erratic = [&](const Case& of_case, const RunRequest& of, const Pulse& pulse) {
+    RunRequest disturbed = of;
+    if (of.threads > 2) disturbed.scene.gravity.level *= 1.0 + 1e-15;
+    return simulate(of_case, disturbed, pulse);
+  };
+  const CampaignVerdict verdict = run_campaign({definition}, {.out = scratch.path()}, erratic);
+  EXPECT_EQ(verdict.cases[0].runs[0].metrics.at("bits_differ"), 2.0);
+}
+
 TEST(Campaign, NoticesARepeatThatDiffers) {
   const tests::ScratchDirectory scratch;
   Case definition = columns("some", {10});

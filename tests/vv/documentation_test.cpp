@@ -21,6 +21,7 @@
 #include "vv/metamorphic.hpp"
 #include "vv/norms.hpp"
 #include "vv/record.hpp"
+#include "vv/rounding_reader.hpp"
 
 namespace mpm::vv {
 namespace {
@@ -222,6 +223,8 @@ TEST(Documentation, NamesEveryKeyOfTheSchema) {
 TEST(Documentation, NamesEveryMetricReferenceFieldAndMetamorphosis) {
   for (const Metric& metric : metric_catalogue()) EXPECT_TRUE(names(page(), metric.name)) << metric.name;
   for (const Metric& metric : advice_catalogue()) EXPECT_TRUE(names(page(), metric.name)) << metric.name;
+  for (const std::string& metric : rounding_metric_names(RoundingRequest()))
+    EXPECT_TRUE(names(section("Rounding"), metric)) << metric;
   for (const std::string& reference : reference_catalogue())
     EXPECT_TRUE(names(page(), reference)) << reference;
   for (const FieldQuantity& field : field_catalogue())

@@ -305,6 +305,27 @@ const std::vector<Malformed>& malformed_cases() {
        "/gates/0/metric", "a metric that the case measures", "which needs repeat_on_other_threads",
        Schema::cannot_tell},
 
+      {R"([{"op": "replace", "path": "/gates/0/metric", "value": "rounding.share"}])", "/gates/0/metric", "one of ",
+       "\"rounding.share\"", Schema::cannot_tell},
+      {R"([{"op": "add", "path": "/repeat_on_threads", "value": [2, 2]}])", "/repeat_on_threads/1", "each number once",
+       "2 again", Schema::refuses},
+      {R"([{"op": "add", "path": "/repeat_on_threads", "value": [0]}])", "/repeat_on_threads/0",
+       "a number of threads from 1 to 64", "0", Schema::refuses},
+      {R"([{"op": "add", "path": "/repeat_on_threads", "value": []}])", "/repeat_on_threads",
+       "an array of at least one value", "an empty array", Schema::refuses},
+
+      // Rounding.
+      {R"([{"op": "add", "path": "/rounding", "value": {"baseline": {}}}])", "/rounding/baseline",
+       "a value of at least one axis", "", Schema::refuses},
+      {R"([{"op": "add", "path": "/rounding", "value": {"baseline": {"/scene/scheme": ["mpm", "cpgimp"]}}}])",
+       "/rounding/baseline/~1scene~1scheme", "the one value that the others are compared with", "", Schema::refuses},
+      {R"([{"op": "add", "path": "/rounding", "value": {"baseline": {"/scene/scheme": ["mpm"]}, "cells": "/scene/damping"}}])",
+       "/rounding/cells", "a swept parameter", "\"/scene/damping\"", Schema::cannot_tell},
+      {R"([{"op": "add", "path": "/rounding", "value": {"baseline": {"/scene/grid/cell_size": ["0.1 m"]}, "cells": "/scene/grid/cell_size"}}])",
+       "/rounding/cells", "an axis that is not one of the baseline's", "", Schema::cannot_tell},
+      {R"([{"op": "add", "path": "/rounding", "value": {"baseline": {"/scene/grid/cell_size": ["0.1 m"]}, "cells": "/scene/scheme"}}])",
+       "/rounding/cells", "makes the cell size smaller from each value to the next", "", Schema::cannot_tell},
+
       // Figures.
       {R"([{"op": "replace", "path": "/figures/0/kind", "value": "profile"}])", "/figures/0/kind",
        "one of profiles, convergence, bars, history", "\"profile\" (did you mean \"profiles\"?)",

@@ -127,6 +127,9 @@ const std::vector<OptionalKey>& optional_keys() {
       // Domains that do not grow have no use for a limit.
       {"scene.domain_limit",
        {{bar_of_points, "/domain_limit", 1}, {block_of_fixed_domains, "/domain_limit", 1}}},
+      {"scene.compensated_sums", {{bar, "/compensated_sums", false}, {block, "/compensated_sums", false}}},
+      {"scene.particle_order", {}, only_absence},
+      {"scene.light_nodes", {}, only_absence},
       {"scene.model",
        {{bar, "/model", {{"precision", "as_written"}}}, {block, "/model", {{"dimension", "automatic"}}}}},
       {"model.dimension", {{block, "/model/dimension", "automatic"}}},
@@ -288,6 +291,7 @@ TEST(UnusedFeatures, what_is_not_the_default_is_told_from_it) {
        {Other{bar, "/update_order", "usl"}, Other{block, "/precision", "float"},
         Other{block, "/objectivity", "jaumann"}, Other{bar, "/flip_fraction", 0.9},
         Other{block, "/damping", 0.1}, Other{block, "/sums_strain", true}, Other{bar, "/sums_work", true},
+        Other{block, "/compensated_sums", true}, Other{block, "/particle_order", {{"shuffle", 1}}},
         Other{block, "/domain_limit", 0.2501}, Other{block, "/bodies/0/locking_control", "cell_average"},
         Other{bar, "/bodies/0/density_ramp/start", "10 ms"}, Other{bar, "/surface_loads/0/ramp", "10 ms"},
         Other{driven_block, "/driven_motion/period", "1 s"}}) {

@@ -1,0 +1,208 @@
+#include "reports/stability_section.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "reports/document.hpp"
+#include "tests/support/demo_stability.hpp"
+
+namespace mpm::reports {
+namespace {
+
+using Class = vv::StabilityClass;
+
+bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+/// The part of the page about stability.
+std::string section_of(const vv::CampaignVerdict& campaign) {
+  const std::string html = report_html(campaign, {});
+  const std::size_t begin = html.find("<section id=\"stability\">");
+  EXPECT_NE(begin, std::string::npos);
+  return html.substr(begin, html.find("</section>", begin) - begin);
+}
+
+vv::CampaignVerdict campaign_of(const vv::CaseVerdict& verdict) {
+  vv::CampaignVerdict campaign;
+  campaign.cases = {verdict};
+  return campaign;
+}
+
+vv::GateResult class_gate(const std::string& found, const std::string& expected, bool good) {
+  vv::GateResult gate;
+  gate.id = "class";
+  gate.metric = "class";
+  gate.op = "is";
+  gate.found = found;
+  gate.expected = expected;
+  gate.detail = found + " <somehow>";
+  gate.advice = "Take smaller steps.";
+  gate.status = good ? vv::GateStatus::pass : vv::GateStatus::fail;
+  return gate;
+}
+
+/// Three extremes: one right, one that diverged as expected, one that rings against expectation.
+vv::CaseVerdict demo_extremes() {
+  vv::CaseVerdict verdict;
+  verdict.definition.id = "extreme_soft";
+  verdict.definition.title = "Very soft soil";
+  verdict.status = vv::CaseStatus::fail;
+  const std::pair<const char*, Class> found[] = {
+      {"1 kPa", Class::accurate}, {"1 Pa", Class::diverged}, {"10 Pa", Class::oscillating}};
+  for (const auto& [modulus, stability] : found) {
+    vv::RunVerdict run;
+    run.parameters = {{"modulus", modulus}};
+    run.record.outcome.ending = Ending::reached_time;
+    run.stability = stability;
+    verdict.definition.runs.push_back({});
+    verdict.runs.push_back(run);
+  }
+  verdict.runs[0].behaviour.signal.drift = 0.0012;
+  verdict.runs[0].gates = {class_gate("accurate", "accurate or inaccurate", true)};
+  verdict.runs[1].record.outcome = {Ending::outside_grid, 1234, 0.5, 49, 1.04};
+  verdict.runs[1].record.last_good = vv::Snapshot{"last good", 0.25, {}};
+  verdict.runs[1].behaviour.failed = true;
+  verdict.runs[1].gates = {class_gate("diverged", "diverged", true)};
+  verdict.runs[2].behaviour.signal.ringing = 0.031;
+  verdict.runs[2].gates = {class_gate("oscillating", "accurate", false)};
+  return verdict;
+}
+
+/// Float in three scenes: enough, not enough, and not compared; and sums in another order with the same bits.
+vv::CaseVerdict demo_rounding() {
+  vv::CaseVerdict verdict;
+  verdict.definition.id = "rounding_demo";
+  verdict.definition.title = "Rounding";
+  verdict.status = vv::CaseStatus::pass;
+  verdict.definition.rounding = vv::RoundingRequest{{{"numbers", {"double"}}}, "cells"};
+  for (const char* scene : {"column", "footing", "collapse"})
+    for (const char* numbers : {"double", "float", "shuffled"}) {
+      vv::RunVerdict run;
+      run.parameters = {{"place", scene}, {"numbers", numbers}};
+      verdict.runs.push_back(run);
+      verdict.definition.runs.push_back({});
+    }
+  const auto row = [](std::size_t run, double rounding, double cells, const char* lack) {
+    vv::RoundingRow made;
+    made.run = run;
+    made.baseline = run / 3 * 3;
+    made.displacement = made.stress = rounding;
+    made.digits_of_displacement = made.digits_of_stress = rounding > 0.0 ? -std::log10(rounding) : 17.0;
+    made.cells_of_displacement = made.cells_of_stress = cells;
+    made.share = rounding / cells;
+    made.bits_equal = rounding == 0.0 && *lack == '\0';
+    made.lack = lack;
+    return made;
+  };
+  verdict.rounding = {row(1, 1e-6, 1e-3, ""),
+                      row(2, 0.0, 1e-3, ""),
+                      row(4, 4e-4, 1e-3, ""),
+                      row(5, 0.0, 1e-3, ""),
+                      row(7, 0.0, 1.0, "float <ended> early"),
+                      row(8, 0.0, 1e-3, "")};
+  return verdict;
+}
+
+TEST(StabilitySection, SaysThatThereIsNothing) {
+  const std::string text = section_of(support::demo_campaign());
+  EXPECT_TRUE(has(text, "No case of this report looks for the limits of stability."));
+  EXPECT_FALSE(has(text, "<table"));
+  EXPECT_TRUE(
+      has(report_html(support::demo_campaign(), {}), "<a href=\"#stability\">Stability at the extremes</a>"));
+}
+
+TEST(StabilitySection, ListsTheLimitsOfEverySurvey) {
+  vv::CaseVerdict verdict = support::demo_maps();
+  vv::Survey& first = *verdict.runs[0].record.survey;
+  first.own = 0.9;
+  verdict.runs[0].metrics["stability.formula"] = 0.577;
+  vv::Survey& second = *verdict.runs[1].record.survey;
+  second.linear.limit = 0.0;
+  second.linear.lack = "too <many> unknowns";
+  second.unstable = 0.0;
+  const std::string text = section_of(campaign_of(verdict));
+  EXPECT_TRUE(has(text, "<a href=\"#time_steps-map\">Time steps of a bar</a>"));
+  EXPECT_TRUE(has(text, ">0.577<"));
+  EXPECT_TRUE(has(text, "0.624\u00a0…\u00a00.663")) << text;
+  EXPECT_TRUE(has(text, "top of the column"));
+  EXPECT_TRUE(has(text, "take at most 0.15, 0.17 of its own: beyond it is not accurate"));
+  EXPECT_TRUE(has(text, "its own is accurate"));
+  EXPECT_TRUE(has(text, "too &lt;many&gt; unknowns"));
+  EXPECT_TRUE(has(text, ">≥ "));
+}
+
+TEST(StabilitySection, TellsWhatBecameOfEveryExtreme) {
+  const std::string text = section_of(campaign_of(demo_extremes()));
+  for (const char* part :
+       {"Very soft soil", ">accurate<", ">diverged<", ">oscillating<", "as expected", "SURPRISE",
+        "accurate or inaccurate", "drift\u00a00.0012", "ringing\u00a00.031", "particle 49",
+        "a particle left the grid", "value 1.04", "good up to <i>t</i> = 0.25", "Take smaller steps.",
+        "oscillating &lt;somehow&gt;", "3 runs"})
+    EXPECT_TRUE(has(text, part)) << part;
+  const std::size_t unexpected = text.find("What was not expected");
+  ASSERT_NE(unexpected, std::string::npos);
+  const std::string surprises = text.substr(unexpected, text.find("</table>", unexpected) - unexpected);
+  EXPECT_TRUE(has(surprises, "10 Pa"));
+  EXPECT_FALSE(has(surprises, "1 kPa"));
+}
+
+TEST(StabilitySection, SaysThatAllWasExpected) {
+  vv::CaseVerdict verdict = demo_extremes();
+  verdict.runs[2].gates = {class_gate("oscillating", "oscillating", true)};
+  const std::string text = section_of(campaign_of(verdict));
+  EXPECT_FALSE(has(text, "What was not expected"));
+  EXPECT_TRUE(has(text, "Every run is of a class that was expected of it."));
+}
+
+TEST(StabilitySection, ShowsWhyASceneWasRefused) {
+  vv::CaseVerdict verdict = demo_extremes();
+  verdict.definition.runs[2].refusal = "density must be <above> 0";
+  verdict.runs[2].stability = Class::refused;
+  verdict.runs[2].behaviour.refused = true;
+  EXPECT_TRUE(has(section_of(campaign_of(verdict)), "density must be &lt;above&gt; 0"));
+}
+
+TEST(StabilitySection, ShowsClassesInTheGatesOfTheCase) {
+  const std::string html = report_html(campaign_of(demo_extremes()), {});
+  EXPECT_TRUE(has(html, "<td class=\"n\">oscillating</td><td class=\"n\">expected accurate</td>"));
+}
+
+TEST(StabilitySection, SaysPlainlyWhetherFloatIsEnough) {
+  vv::CaseVerdict verdict = demo_rounding();
+  const std::string text = section_of(campaign_of(verdict));
+  EXPECT_TRUE(has(
+      text,
+      "is enough in 1 of 2 runs, and not in the others: rounding is at most 40\u00a0% of the error of the "
+      "cells (footing); 1 run could not be compared."))
+      << text;
+  EXPECT_TRUE(has(text, "gives the same bits in all of 3 runs."));
+  for (const char* part :
+       {">enough<", ">not enough<", ">same bits<", ">not compared<", "float &lt;ended&gt; early",
+        "6.0 digits", "3.4 digits", ">40\u00a0%<", "at most\n10\u00a0% of the error"})
+    EXPECT_TRUE(has(text, part)) << part;
+
+  verdict.rounding.resize(1);
+  EXPECT_TRUE(
+      has(section_of(campaign_of(verdict)), "is enough in all of 1 run: rounding is at most 0.10\u00a0%"));
+  verdict.rounding[0].share = 0.3;
+  EXPECT_TRUE(has(section_of(campaign_of(verdict)), "is not enough in any of 1 run"));
+  verdict.rounding[0].share = verdict.rounding[0].cells_of_stress = std::nan("");
+  EXPECT_TRUE(has(section_of(campaign_of(verdict)), "the error of the cells is not known"));
+}
+
+TEST(StabilitySection, CountsRepeatsOnOtherNumbersOfThreads) {
+  vv::CaseVerdict verdict = demo_rounding();
+  verdict.rounding.clear();
+  vv::RunVerdict& run = verdict.runs[0];
+  run.record.digest = "a";
+  run.record.repeats = {{2, "a"}, {3, "a"}, {8, "a"}};
+  run.metrics["bits_differ"] = 0.0;
+  std::string text = section_of(campaign_of(verdict));
+  EXPECT_TRUE(has(text, ">1, 2, 3, 8</td><td class=\"n\">3</td><td><span class=\"chip pass\">same bits"));
+  run.metrics["bits_differ"] = 2.0;
+  text = section_of(campaign_of(verdict));
+  EXPECT_TRUE(has(text, "2 DIFFER"));
+}
+
+}  // namespace
+}  // namespace mpm::reports
