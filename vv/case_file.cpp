@@ -18,6 +18,7 @@
 #include "vv/rounding_reader.hpp"
 #include "vv/scene_reader.hpp"
 #include "vv/sufficient_model.hpp"
+#include "vv/survey_reader.hpp"
 #include "vv/sweep.hpp"
 #include "vv/classification.hpp"
 #include "vv/trade_reader.hpp"
@@ -66,6 +67,10 @@ std::string read_metric(const JsonPlace& place, const Case& read) {
   }
   if (name.starts_with(class_metric) && !read.classification) {
     place.refuse("a metric that the case measures", ", which needs the key \"classification\"");
+  }
+  if (!tells_of_any_run(name) && name.starts_with("stability.") != read.survey.has_value()) {
+    place.refuse(read.survey ? "a metric of a survey, stability.*" : "a metric that the case measures",
+                 read.survey ? "" : ", which needs the key \"stability\"");
   }
   if (name == "bits_differ" && !read.repeat_on_other_threads && read.repeat_on_threads.empty()) {
     place.refuse("a metric that the case measures",
@@ -548,7 +553,7 @@ void read_parts(Case& read) {
   keys.insert(keys.end(), {"measurements", "pairs", "repeat_on_threads"});
   if (!place["element"].present()) {
     keys.insert(keys.end(), {"metamorphoses", "probes", "snapshots", "cuts"});
-    keys.insert(keys.end(), {"trades", "trade_without", "advice", "classification", "refusals", "rounding"});
+    keys.insert(keys.end(), {"trades", "trade_without", "advice", "classification", "refusals", "rounding", "stability"});
   }
   place.allow_only(keys);
   optional_text(place["$schema"]);
@@ -558,6 +563,8 @@ void read_parts(Case& read) {
   read.sweep = read_sweep(place["sweep"], subject);
   read.runs = expand(subject, read.sweep, place["trade_without"], place["refusals"].flag_or(false));
   require_suited(place["references"], read);
+  read.survey = read_survey(place["stability"]);
+  if (read.survey) refuse_beside_survey(place);
   read.metamorphoses = read_metamorphoses(place["metamorphoses"], read);
   read.probes = read_probes(place["probes"], read.runs);
   read.snapshots = read_snapshots(place["snapshots"], read.runs, read.probes);

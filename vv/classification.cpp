@@ -166,7 +166,7 @@ const std::vector<Metric>& classification_catalogue() {
 }
 
 void classify(const Case& definition, RunVerdict& run) {
-  if (!definition.classification) return;
+  if (!definition.classification || definition.survey) return;
   if (!observe(definition, scene_of(definition, run), run).empty()) return;
   run.stability = class_of(run.behaviour, definition.classification->limits);
   run.metrics[class_metric] = static_cast<double>(*run.stability);

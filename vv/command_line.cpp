@@ -14,6 +14,7 @@
 #include "vv/digitise_command.hpp"
 #include "vv/machine.hpp"
 #include "vv/revision.hpp"
+#include "vv/stability_command.hpp"
 
 namespace mpm::vv {
 namespace {
@@ -220,15 +221,16 @@ fs::path writable_directory(const fs::path& wanted) {
   return directory;
 }
 
+/// `tell` says on standard output what was found.
 int run_and_report(const std::vector<Case>& cases, const Arguments& arguments, const fs::path& wanted_out,
-                   const ReportWriter& reports) {
+                   const ReportWriter& reports, void (*tell)(const CampaignVerdict&) = print_gates) {
   const fs::path out = writable_directory(wanted_out);
   if (reports.read_performance) reports.read_performance(arguments.performance);
   const CampaignVerdict verdict =
       run_campaign(cases, {.out = out, .threads = arguments.threads, .quick = arguments.quick});
   constexpr auto replace = Json::error_handler_t::replace;
   write_atomically(out / "results.json", to_json(verdict).dump(2, ' ', false, replace) + "\n");
-  print_gates(verdict);
+  tell(verdict);
   print_counts(verdict, out);
   if (reports.write) reports.write(verdict, out);
   return verdict.failed() ? gate_failed : all_good;
@@ -301,6 +303,12 @@ int report(const Arguments& arguments, const ReportWriter& reports) {
   return run_and_report(*cases, arguments, out, reports);
 }
 
+int stability(const StabilityCommand& command, const ReportWriter& reports) {
+  Arguments arguments;
+  arguments.threads = command.threads();
+  return run_and_report({command.surveys(file_of)}, arguments, command.out(), reports, StabilityCommand::tell);
+}
+
 /// Whether a file of measurements is sound, and this very program could have made it on this machine.
 int check_performance(const Arguments& arguments, const ReportWriter& reports) {
   const std::optional<MeasuredBy> by = reports.read_performance(arguments.performance);
@@ -331,6 +339,7 @@ struct CommandLine {
   CLI::App* report = app.add_subcommand("report", "Run and judge every shipped case and write the report");
   DigitiseCommand digitise{app};
   AdviseCommand advise{app};
+  StabilityCommand stability{app};
   CLI::App* check_performance =
       app.add_subcommand("check-performance",
                          "Read a file of measurements; exit code 0 if it is of this revision and machine, "
@@ -370,6 +379,7 @@ struct CommandLine {
     if (run->parsed()) return vv::run(arguments, reports);
     if (report->parsed()) return vv::report(arguments, reports);
     if (digitise.parsed()) return digitise.run(), all_good;
+    if (stability.parsed()) return vv::stability(stability, reports);
     if (advise.parsed()) return advise.run(file_of) ? all_good : gate_failed;
     if (check_performance->parsed()) return vv::check_performance(arguments, reports);
     return of_the_front_door(test->parsed() ? "test" : "bench");

@@ -72,5 +72,6 @@ NormFamily collapse_norms();      ///< what a granular column leaves; needs no r
 NormFamily motion_norms();        ///< motions whose course is known
 NormFamily element_norms();       ///< the constitutive law alone, without particles or grid
 NormFamily conservation_norms();  ///< what no motion may change; needs no reference solution
+NormFamily stability_norms();     ///< of surveys of time steps, and of nothing else
 
 }  // namespace mpm::vv

@@ -14,7 +14,7 @@ namespace {
 const std::vector<NormFamily>& families() {
   static const std::vector<NormFamily> all{column_norms(),      footing_norms(), mechanism_norms(),
                                            collapse_norms(),    motion_norms(),  element_norms(),
-                                           conservation_norms()};
+                                           conservation_norms(), stability_norms()};
   return all;
 }
 
@@ -199,6 +199,10 @@ Judgement judge(const Case& definition, const RunRequest& request, const Record&
   judging.set("completed", record.completed() ? 1 : 0);
   judging.set("steps", static_cast<double>(record.cost.steps));
   judging.set("non_finite_values", count_non_finite(record));
+  if (definition.survey) {
+    stability_norms().judge(judging);
+    return judging.result;
+  }
   if (!request.element) judge_scene(judging);
   for (const auto& [name, value] : record.measured) judging.set(name, value);
   for (const NormFamily& family : families()) {

@@ -143,11 +143,12 @@ class Surveyor {
     point.stability = class_of(behaviour, limits);
   }
 
-  /// Of the mean displacement of the first body, from when its loads have settled. A run that came to rest at
-  /// once is steady.
+  /// Of the mean displacement of the first body, over the second half of the time from when its loads have
+  /// settled to the end: the first half is left to the motion that the loads have started. A run that came to
+  /// rest at once is steady.
   SignalShape signal_of(const Record& record) const {
     const History& motion = record.histories.front();
-    const double from = loads_settled_after(request_.scene);
+    const double from = (loads_settled_after(request_.scene) + record.end_time) / 2;
     double scale = 0.0;
     for (const double value : motion.value) scale = std::max(scale, std::abs(value));
     const auto kept =
@@ -159,9 +160,8 @@ class Surveyor {
   /// Along a bar; across a body of two dimensions stress varies in ways that are no zig-zag.
   double zigzag_of(const Profile& profile) const {
     if (request_.scene.dimension != 1) return 0.0;
-    const double zigzag = zigzag_of_field(profile.position, profile.stress, profile.volume,
-                                          line_reach * request_.scene.cell_size);
-    return std::isnan(zigzag) ? 0.0 : zigzag;
+    return zigzag_of_field(profile.position, profile.stress, profile.volume,
+                           line_reach * request_.scene.cell_size);
   }
 
   /// The first run is that of the smallest step: it is what the others are compared with, or tells how exact

@@ -31,13 +31,14 @@ Scene bar(Scheme scheme, UpdateOrder order, int per_cell, double offset, int cel
   scene.grid_upper = {(cells + 4) * h, 0.0};
   scene.edges[0][0] = foot;
   const double upper = (cells + 1 + offset + 0.5 / per_cell) * h;
-  scene.bodies = {{.name = "bar",
-                   .lower = {upper - cells * h},
-                   .upper = {upper},
-                   .anywhere = true,
-                   .particles_per_cell = {per_cell, 1},
-                   .density = density,
-                   .material = LinearElastic{youngs_modulus, 0.0}}};
+  Body& body = scene.bodies.emplace_back();
+  body.name = "bar";
+  body.lower = {upper - cells * h};
+  body.upper = {upper};
+  body.anywhere = true;
+  body.particles_per_cell = {per_cell, 1};
+  body.density = density;
+  body.material = LinearElastic{youngs_modulus, 0.0};
   return scene;
 }
 
@@ -241,3 +242,184 @@ TEST(StepMatrix, HasTheUnitsOfTheWaves) {
   stiff.bodies[0].density *= 1e-5;
   EXPECT_LT((StepMatrix(plain).at(0.5) - StepMatrix(stiff).at(0.5)).cwiseAbs().maxCoeff(), 1e-12);
 }
+
+// ---- limits ----
+
+struct Limits {
+  double offset, mpm_usl, mpm_others, gimp_usl, gimp_others;
+};
+
+/// A second computation, made apart from this one, of bars with two particles a cell.
+TEST(VerificationOfLinearStability, LimitsAreThoseOfAnotherComputation) {
+  for (const auto& [offset, mpm_usl, mpm_others, gimp_usl, gimp_others] :
+       {Limits{0.25, 0.657, 1.73, 0.657, 1.73}, Limits{0.1, 0.435, 1.62, 0.704, 1.94},
+        Limits{0.01, 0.141, 1.44, 0.709, 1.97}, Limits{0.001, 0.0447, 1.41, 0.708, 1.97}}) {
+    const auto limit = [&, at = offset](Scheme scheme, UpdateOrder order) {
+      return limit_of(bar(scheme, order, 2, at));
+    };
+    EXPECT_NEAR(limit(Scheme::mpm, UpdateOrder::usl) / mpm_usl, 1, 5e-3) << offset;
+    EXPECT_NEAR(limit(Scheme::cpgimp, UpdateOrder::usl) / gimp_usl, 1, 5e-3) << offset;
+    for (const UpdateOrder order : {UpdateOrder::musl, UpdateOrder::usf}) {
+      EXPECT_NEAR(limit(Scheme::mpm, order) / mpm_others, 1, 5e-3) << offset;
+      EXPECT_NEAR(limit(Scheme::cpgimp, order) / gimp_others, 1, 5e-3) << offset;
+    }
+  }
+}
+
+TEST(VerificationOfLinearStability, BarsOfPointsMeetTheClosedForms) {
+  for (const int per_cell : {1, 2, 4}) {
+    for (const double offset : {0.1, 0.01, 0.001}) {
+      std::vector<reference::BarParticle> cell;
+      for (int k = 0; k < per_cell; ++k) cell.push_back({offset + static_cast<double>(k) / per_cell});
+      // The end's formula leaves out the square of the offset; bars of finite length and their ends bear up
+      // to 2 % less than one without ends, and more where its worst wave does not fit.
+      EXPECT_NEAR(limit_of(bar(Scheme::mpm, UpdateOrder::usl, per_cell, offset)) /
+                      reference::free_end_limit(per_cell, offset),
+                  1, offset * offset + 2e-4);
+      for (const UpdateOrder order : {UpdateOrder::musl, UpdateOrder::usf})
+        EXPECT_NEAR(limit_of(bar(Scheme::mpm, order, per_cell, offset, 16)) /
+                        reference::endless_bar_limit(cell, StrainedBy::particles),
+                    1, 0.022);
+    }
+  }
+}
+
+/// A bar held at both ends with its particles in the middles of cells: nothing but the inside.
+TEST(VerificationOfLinearStability, FullCellsMeetTheClosedFormOfTheBarWithoutEnds) {
+  for (const UpdateOrder order : {UpdateOrder::musl, UpdateOrder::usf, UpdateOrder::usl}) {
+    Scene scene = bar(Scheme::mpm, order, 1, 0.5, 24, Condition::fixed);
+    scene.edges[0][1] = Condition::fixed;
+    scene.bodies[0].lower = {0.0};
+    scene.bodies[0].upper = scene.grid_upper = {24 * h};
+    const double exact = reference::endless_bar_limit({{0.5}}, strained_by(order));
+    EXPECT_NEAR(exact, order == UpdateOrder::usl ? std::sqrt(0.5) : 2.0, 1e-12);
+    EXPECT_NEAR(limit_of(scene) / exact, 1, 5e-3);
+  }
+}
+
+TEST(VerificationOfLinearStability, AParticleAloneMeetsItsClosedForm) {
+  for (const double offset : {0.5, 0.2, 0.01}) {
+    EXPECT_NEAR(
+        limit_of(bar(Scheme::mpm, UpdateOrder::usl, 1, offset, 1)) / reference::lone_particle_limit({offset}),
+        1, 2e-4);
+    EXPECT_NEAR(limit_of(patch(Scheme::mpm, UpdateOrder::usl, 1, offset, 1, 0.4)) /
+                    reference::lone_particle_limit(offset, offset, 0.4),
+                1, 2e-4);
+    for (const UpdateOrder order : {UpdateOrder::musl, UpdateOrder::usf})
+      EXPECT_NE(linear_stability(bar(Scheme::mpm, order, 1, offset, 1)).lack.find("every time step"),
+                std::string::npos);
+  }
+  for (const double offset : {0.5, 0.3, 0.1, 0.001}) {
+    const Scene scene = bar(Scheme::cpgimp, UpdateOrder::usl, 4, offset, 1);
+    Scene alone = scene;
+    alone.bodies[0].lower[0] = alone.bodies[0].upper[0] - h / 4;
+    EXPECT_NEAR(limit_of(alone) / reference::lone_particle_limit({offset, 0.125}), 1, 2e-4) << offset;
+  }
+}
+
+/// Whatever else is in a bar under USL, it bears what its worst particle alone bears.
+TEST(StabilityOfTheAutomaticStep, BarsUnderUslBearMoreThanTheirWorstParticleAlone) {
+  for (const Scheme scheme : {Scheme::mpm, Scheme::cpgimp}) {
+    for (const int per_cell : {1, 2, 3, 4}) {
+      for (const double offset : {0.3, 0.05, 0.001}) {
+        const Scene scene = bar(scheme, UpdateOrder::usl, per_cell, offset, 8);
+        const ParticleFields fields = Simulation(linearised(scene)).particles();
+        double worst = 10.0;
+        for (std::size_t p = 0; p < fields.mass.size(); ++p) {
+          const double cells = fields.position[p] / h;
+          worst = std::min(
+              worst, reference::lone_particle_limit({cells - std::floor(cells), fields.half_size[p] / h}));
+        }
+        EXPECT_GE(limit_of(scene), worst * (1 - 1e-3));
+      }
+    }
+  }
+}
+
+constexpr double usual_fraction = 0.2;  // of the shipped scenes
+
+TEST(StabilityOfTheAutomaticStep, IsSafeInPartlyFilledCellsButForPointsUnderUsl) {
+  for (const Scheme scheme : {Scheme::mpm, Scheme::ugimp, Scheme::cpgimp}) {
+    for (const UpdateOrder order : {UpdateOrder::musl, UpdateOrder::usf, UpdateOrder::usl}) {
+      for (const double offset : {0.25, 0.1, 0.03, 0.01, 0.001}) {
+        const bool is_in_danger = scheme == Scheme::mpm && order == UpdateOrder::usl;
+        const double bar_limit = limit_of(bar(scheme, order, 2, offset)),
+                     patch_limit = limit_of(patch(scheme, order, 2, offset, 3));
+        if (is_in_danger) {
+          EXPECT_LT(bar_limit, std::sqrt(2 * offset));
+          EXPECT_LT(patch_limit, std::sqrt(2 * offset));
+          continue;
+        }
+        EXPECT_GT(bar_limit, order == UpdateOrder::usl ? 0.65 : 1.4);
+        EXPECT_GT(patch_limit, order == UpdateOrder::usl ? 0.6 : 1.35);
+        EXPECT_GT(patch_limit / usual_fraction, 3.0);
+      }
+    }
+  }
+}
+
+/// Every domain stretched `stretch` times along every axis, its mass the same.
+LinearStability stretched(int dimension, UpdateOrder order, double stretch) {
+  Scene scene =
+      dimension == 1 ? bar(Scheme::cpgimp, order, 2, 0.25, 8) : patch(Scheme::cpgimp, order, 2, 0.25, 3);
+  for (double& upper : scene.grid_upper) upper *= 5;
+  if (dimension == 1) scene.grid_upper[1] = 0.0;
+  ParticleFields state = Simulation(linearised(scene)).particles();
+  for (double& place : state.position) place = h + (place - h) * stretch;
+  for (double& half_size : state.half_size) half_size *= stretch;
+  for (double& volume : state.volume) volume *= std::pow(stretch, dimension);
+  return linear_stability(StepMatrix(scene, state));
+}
+
+/// Waves are faster in what has become thinner, and the step is that of the start: the margin shrinks, and is
+/// still there with the usual fraction when domains have nearly become as large as they can be.
+TEST(StabilityOfTheAutomaticStep, IsSafeInStretchedDomains) {
+  for (const double stretch : {1.5, 2.0, 2.9, 3.8}) {
+    for (const UpdateOrder order : {UpdateOrder::musl, UpdateOrder::usf, UpdateOrder::usl}) {
+      const double bar_limit = stretched(1, order, stretch).limit,
+                   patch_limit = stretched(2, order, stretch).limit;
+      EXPECT_GT(bar_limit, order == UpdateOrder::usl ? 0.49 : 1.4) << stretch;
+      EXPECT_GT(patch_limit, order == UpdateOrder::usl ? 0.22 : 0.88) << stretch;
+      EXPECT_GT(patch_limit, usual_fraction);
+    }
+  }
+  EXPECT_LT(stretched(2, UpdateOrder::musl, 3.8).limit, 1.0) << "a fraction of 1 would not be safe";
+}
+
+// ---- the search ----
+
+TEST(LinearStability, ToleratesWhatRoundingMakesOfDefectiveEigenvalues) {
+  // Far below every limit nothing grows but by rounding.
+  for (const UpdateOrder order : {UpdateOrder::musl, UpdateOrder::usf, UpdateOrder::usl}) {
+    EXPECT_LT(spectral_radius(StepMatrix(bar(Scheme::cpgimp, order, 3, 0.5, 12)), 0.1), 1 + 2e-7);
+    EXPECT_LT(spectral_radius(StepMatrix(patch(Scheme::mpm, order, 2, 0.5, 3)), 0.1), 1 + 2e-7);
+  }
+}
+
+TEST(LinearStability, FindsTheLimitWithoutAMatrix) {
+  for (const UpdateOrder order : {UpdateOrder::musl, UpdateOrder::usl}) {
+    const Scene scene = bar(Scheme::mpm, order, 2, 0.1);
+    LinearSearch without;
+    without.most_of_matrix = 0;
+    EXPECT_NEAR(linear_stability(scene, without).limit / limit_of(scene), 1, 2e-3);
+  }
+  LinearSearch small;
+  small.most_of_matrix = small.most_of_iterations = 10;
+  const LinearStability found = linear_stability(bar(Scheme::mpm, UpdateOrder::usl, 2, 0.1), small);
+  EXPECT_EQ(found.limit, 0.0);
+  EXPECT_NE(found.lack.find("48 unknowns"), std::string::npos) << found.lack;
+}
+
+TEST(LinearStability, SaysWhatItTried) {
+  const LinearStability found = linear_stability(bar(Scheme::mpm, UpdateOrder::usl, 2, 0.1));
+  EXPECT_EQ(found.unknowns, 48);
+  ASSERT_EQ(found.fraction.size(), found.radius.size());
+  EXPECT_TRUE(std::is_sorted(found.fraction.begin(), found.fraction.end()));
+  for (std::size_t k = 0; k < found.fraction.size(); ++k)
+    EXPECT_EQ(found.fraction[k] <= found.limit, found.radius[k] <= 1 + 1e-6);
+  EXPECT_THROW(linear_stability(bar(Scheme::mpm, UpdateOrder::usl, 2, 0.1), {}, [] { return false; }),
+               Abandoned);
+}
+
+}  // namespace
+}  // namespace mpm::vv
