@@ -18,10 +18,12 @@
 #include <numeric>
 #include <system_error>
 
+#include "vv/linear_stability.hpp"
 #include "vv/metamorphic.hpp"
 #include "vv/precision_pilots.hpp"
 #include "vv/sampler.hpp"
 #include "vv/sufficient_model.hpp"
+#include "vv/survey_runs.hpp"
 
 namespace mpm::vv {
 namespace {
@@ -299,6 +301,70 @@ std::vector<Snapshot> snapshots_from_json(const Json& json) {
   return snapshots;
 }
 
+// ---- surveys ----
+
+StabilityClass stability_from(const std::string& name) {
+  for (const StabilityClass stability :
+       {StabilityClass::accurate, StabilityClass::inaccurate, StabilityClass::drifting, StabilityClass::oscillating,
+        StabilityClass::diverged, StabilityClass::refused}) {
+    if (name == name_of(stability)) return stability;
+  }
+  throw std::runtime_error("unknown class: " + name);
+}
+
+Json survey_point_to_json(const SurveyPoint& point) {
+  return {{"fraction", number(point.fraction)}, {"class", name_of(point.stability)},
+          {"outcome", outcome_to_json(point.outcome)}, {"reason", point.reason},
+          {"drift", number(point.signal.drift)}, {"ringing", number(point.signal.ringing)},
+          {"spike", number(point.signal.spike)}, {"zigzag", number(point.zigzag)}, {"error", number(point.error)}};
+}
+
+SurveyPoint survey_point_from_json(const Json& json) {
+  SurveyPoint point;
+  point.fraction = number_from(json.at("fraction"));
+  point.stability = stability_from(json.at("class").get<std::string>());
+  point.outcome = outcome_from_json(json.at("outcome"));
+  point.reason = json.at("reason").get<std::string>();
+  point.signal = {number_from(json.at("drift")), number_from(json.at("ringing")), number_from(json.at("spike"))};
+  point.zigzag = number_from(json.at("zigzag"));
+  point.error = number_from(json.at("error"));
+  return point;
+}
+
+Json survey_to_json(const Survey& survey) {
+  Json json = {{"own", number(survey.own)},
+               {"linear",
+                {{"limit", number(survey.linear.limit)},
+                 {"unknowns", survey.linear.unknowns},
+                 {"fraction", numbers(survey.linear.fraction)},
+                 {"radius", numbers(survey.linear.radius)},
+                 {"lack", survey.linear.lack}}},
+               {"points", Json::array()},
+               {"stable", number(survey.stable)},
+               {"unstable", number(survey.unstable)},
+               {"accurate", number(survey.accurate)},
+               {"error_name", survey.error_name}};
+  for (const SurveyPoint& point : survey.points) json["points"].push_back(survey_point_to_json(point));
+  return json;
+}
+
+Survey survey_from_json(const Json& json) {
+  const Json& linear = json.at("linear");
+  Survey survey;
+  survey.own = number_from(json.at("own"));
+  survey.linear = {.limit = number_from(linear.at("limit")),
+                   .unknowns = linear.at("unknowns").get<std::int64_t>(),
+                   .fraction = numbers_from(linear.at("fraction")),
+                   .radius = numbers_from(linear.at("radius")),
+                   .lack = linear.at("lack").get<std::string>()};
+  for (const Json& point : json.at("points")) survey.points.push_back(survey_point_from_json(point));
+  survey.stable = number_from(json.at("stable"));
+  survey.unstable = number_from(json.at("unstable"));
+  survey.accurate = number_from(json.at("accurate"));
+  survey.error_name = json.at("error_name").get<std::string>();
+  return survey;
+}
+
 /// Whether the last of the values is the first to reach `value` or to lie beyond it, seen from the first.
 bool has_passed(const std::vector<double>& values, double value) {
   const double from = values.front() - value, to = values.back() - value;
@@ -565,6 +631,19 @@ Json essence_of(const HistoryProbe& probe, const Scene& scene) {
   return json;
 }
 
+/// What a survey is told apart by, with what its case says of the class of a run.
+Json essence_of(const SurveyRequest& survey, const Case& definition) {
+  Json json = {{"from", survey.from},         {"to", survey.to},
+               {"points", survey.points},     {"bisections", survey.bisections},
+               {"runs", survey.runs},         {"accuracy", survey.accuracy},
+               {"times_least", survey.times_least}, {"references", definition.references}};
+  if (definition.classification) {
+    const BehaviourLimits& limits = definition.classification->limits;
+    json["limits"] = {limits.drift, limits.ringing, limits.zigzag};
+  }
+  return json;
+}
+
 // ---- element tests ----
 
 std::string digest_of(const ElementRun& run) {
@@ -591,6 +670,28 @@ Record record_element_test(const ElementTest& test, const Pulse& pulse) {
                  .particle_steps = steps,
                  .early_seconds = wall.count(),
                  .early_steps = steps};
+  return record;
+}
+
+// ---- surveys ----
+
+/// Complete once the survey is, whatever became of its runs.
+Record record_survey(const Case& definition, const RunRequest& request, const Pulse& pulse) {
+  const auto began = std::chrono::steady_clock::now();
+  std::int64_t particle_steps = 0;
+  const Pulse counting = [&](std::int64_t fresh) {
+    particle_steps += fresh;
+    return !pulse || pulse(fresh);
+  };
+  Record record;
+  record.survey = survey_of(definition, request, *definition.survey, counting);
+  record.outcome.ending = Ending::reached_time;
+  for (const SurveyPoint& point : record.survey->points) record.outcome.step += point.outcome.step;
+  if (request.refusal.empty()) record.time_step = record.survey->own * crossing_time(request.scene);
+  record.digest = hash_of(survey_to_json(*record.survey).dump());
+  record.cost.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  record.cost.steps = record.outcome.step;
+  record.cost.particle_steps = particle_steps;
   return record;
 }
 
@@ -740,6 +841,7 @@ Json to_json(const Record& record) {
           {"last_good", record.last_good ? snapshots_to_json({*record.last_good}) : Json::array()},
           {"model", model_to_json(record.model)},
           {"paths", paths_to_json(record.paths)},
+          {"survey", record.survey ? survey_to_json(*record.survey) : Json()},
           {"measured", measured_to_json(record.measured)}};
 }
 
@@ -778,6 +880,7 @@ Record record_from_json(const Json& json) {
   if (!good.empty()) record.last_good = good.front();
   record.model = model_from_json(json.at("model"));
   record.paths = paths_from_json(json.at("paths"));
+  if (!json.at("survey").is_null()) record.survey = survey_from_json(json.at("survey"));
   record.measured = measured_from_json(json.at("measured"));
   return record;
 }
@@ -790,8 +893,9 @@ Record unsigned_record(const Case& definition, const RunRequest& request, const 
     refused.input_hash = input_hash(definition, request);
     return refused;
   }
-  Record record = request.element ? record_element_test(*request.element, pulse)
-                                  : record_scene(definition, request, pulse);
+  Record record = definition.survey ? record_survey(definition, request, pulse)
+                  : request.element ? record_element_test(*request.element, pulse)
+                                    : record_scene(definition, request, pulse);
   record.case_id = definition.id;
   record.input_hash = input_hash(definition, request);
   return record;
@@ -812,6 +916,7 @@ std::string input_hash(const Case& definition, const RunRequest& request) {
                                   {"value", snapshot.value}});
   }
   if (!definition.metamorphoses.empty()) input["metamorphoses"] = definition.metamorphoses;
+  if (definition.survey) input["survey"] = essence_of(*definition.survey, definition);
   return hash_of(input.dump());
 }
 

@@ -44,9 +44,9 @@ struct Survey {
   double own = 0.0;       ///< the fraction that the scene itself asks for or comes to [-]
   LinearStability linear;
   std::vector<SurveyPoint> points;  ///< ascending in `fraction`
-  double stable = 0.0;    ///< largest fraction tried below which none diverged [-]; 0 if the smallest did
+  double stable = 0.0;    ///< largest fraction tried up to which none diverged [-]; 0 if the smallest did
   double unstable = 0.0;  ///< least fraction that diverged [-]; 0 if none did
-  double accurate = 0.0;  ///< largest fraction tried below which all are accurate [-]; 0 if the smallest is not
+  double accurate = 0.0;  ///< largest fraction tried up to which the errors of all are within the limit [-]; 0 if the smallest is not
   std::string error_name;  ///< what `SurveyPoint::error` is, for a person
 };
 
