@@ -360,7 +360,9 @@ void check_against_edges(const Scene& scene, const RigidBody& body, const std::s
             condition == Condition::fixed || (condition == Condition::roller && axis == component);
         require(!holds || !holds_edge(scene, body, axis, side), at_index(place + "/velocity", component),
                 "no motion along an axis in which an edge of the grid holds nodes of the body",
-                text_of(body.velocity[component], "m/s"));
+                text_of(body.velocity[component], "m/s") + ", where " + (axis == 0 ? "x" : "y") +
+                    (side == 0 ? "_lower" : "_upper") + " is " +
+                    (condition == Condition::fixed ? "fixed" : "roller"));
       }
     }
   }

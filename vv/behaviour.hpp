@@ -45,7 +45,7 @@ double zigzag_of_field(const std::vector<double>& place, const std::vector<doubl
 /// What a run showed. A measure that was not taken is zero.
 struct Behaviour {
   bool refused = false, failed = false;  ///< not simulated; ended as a numerical failure
-  SignalShape signal;
+  SignalShape signal = {};
   double zigzag = 0.0;  ///< of `zigzag_of_field`
   double error = 0.0;   ///< of the answer
 };

@@ -525,7 +525,9 @@ class Recorder {
     record.cell_crossings = simulation_.cell_crossings();
     record.relative_mass_change = mass_change(end);
     record.profile = profile_of(end);
-    for (Sampler& sampler : samplers_) sampler.sample(now, simulation_.time_step());
+    // A broken state may have no number left to sample; how it broke is told apart from the histories.
+    const bool broken = record.outcome.particle >= 0;
+    for (Sampler& sampler : samplers_) sampler.sample(now, simulation_.time_step(), !broken);
     take_last_snapshots(now);
     record.snapshots = std::move(snapshots_);
     for (Sampler& sampler : samplers_) record.histories.push_back(std::move(sampler).history());

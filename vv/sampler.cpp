@@ -231,9 +231,11 @@ Sampler::Sampler(const HistoryProbe& probe, const Scene& scene, const Observatio
     throw std::invalid_argument("the sampling interval of a history probe must be positive");
 }
 
-void Sampler::sample(const Observation& now, double time_step) {
+void Sampler::sample(const Observation& now, double time_step, bool whatever) {
   if (!history_.time.empty() && history_.time.back() == now.time()) return;
-  history_.value.push_back(factor_ * measure_(now));
+  const double value = factor_ * measure_(now);
+  if (!whatever && !std::isfinite(value)) return;
+  history_.value.push_back(value);
   history_.time.push_back(now.time());
   next_ = every_ * (std::floor((now.time() + 0.5 * time_step) / every_) + 1.0);
 }

@@ -47,8 +47,8 @@ class Sampler {
     return time + 0.5 * time_step >= next_ && time > history_.time.back();
   }
 
-  /// Takes a sample, unless there is one of this moment.
-  void sample(const Observation& now, double time_step);
+  /// Takes a sample, unless there is one of this moment or, without `whatever` it is, it is no finite number.
+  void sample(const Observation& now, double time_step, bool whatever = true);
 
   const History& history() const& { return history_; }
   History history() && { return std::move(history_); }
