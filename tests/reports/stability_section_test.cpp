@@ -57,7 +57,7 @@ vv::CaseVerdict demo_extremes() {
     verdict.definition.runs.push_back({});
     verdict.runs.push_back(run);
   }
-  verdict.runs[0].behaviour.signal.drift = 0.0012;
+  verdict.runs[0].behaviour.signal.drift = 0.012;
   verdict.runs[0].gates = {class_gate("accurate", "accurate or inaccurate", true)};
   verdict.runs[1].record.outcome = {Ending::outside_grid, 1234, 0.5, 49, 1.04};
   verdict.runs[1].record.last_good = vv::Snapshot{"last good", 0.25, {}};
@@ -135,7 +135,7 @@ TEST(StabilitySection, TellsWhatBecameOfEveryExtreme) {
   const std::string text = section_of(campaign_of(demo_extremes()));
   for (const char* part :
        {"Very soft soil", ">accurate<", ">diverged<", ">oscillating<", "as expected", "SURPRISE",
-        "accurate or inaccurate", "drift\u00a00.0012", "ringing\u00a00.031", "particle 49",
+        "accurate or inaccurate", "drift\u00a00.012", "ringing\u00a00.031", "particle 49",
         "a particle left the grid", "value 1.04", "good up to <i>t</i> = 0.25", "Take smaller steps.",
         "oscillating &lt;somehow&gt;", "3 runs"})
     EXPECT_TRUE(has(text, part)) << part;
