@@ -1287,6 +1287,8 @@ std::string name_of_ending(const vv::Record& record) {
       return "a particle inverted";
     case Ending::outside_grid:
       return "a particle left the grid";
+    case Ending::gained_energy:
+      return "gained energy from nowhere";
     case Ending::domain_too_large:
       return "a domain outgrew its cell";
   }

@@ -8,6 +8,7 @@
 
 #include "reports/figure_parts.hpp"
 #include "reports/figures.hpp"
+#include "reports/typography.hpp"
 
 namespace mpm::reports {
 namespace {
@@ -195,15 +196,37 @@ Axis fraction_axis(const std::vector<Map>& maps) {
   return axis;
 }
 
+/// "particles per cell" of "/scene/bodies/0/particles_per_cell/0": the last name that is no number.
+std::string words_of_axis(std::string pointer) {
+  while (pointer.find_last_not_of("0123456789") != std::string::npos &&
+         pointer[pointer.find_last_not_of("0123456789")] == '/' && pointer.back() != '/')
+    pointer.erase(pointer.find_last_not_of("0123456789"));
+  return escaped(spaced(pointer.substr(pointer.rfind('/') + 1)));
+}
+
 Axis column_axis(const Map& map, const vv::FigureRequest& request) {
   Axis axis;
-  if (!request.map_axis.empty())
-    axis.label = spaced(request.map_axis.substr(request.map_axis.rfind('/') + 1));
-  axis.label = escaped(axis.label);
+  axis.label = words_of_axis(request.map_axis);
   axis.range = {-0.5, std::max(0.5, static_cast<double>(map.columns.size()) - 0.5)};
   for (std::size_t c = 0; c < map.columns.size(); ++c)
     axis.ticks.emplace_back(static_cast<double>(c), map.columns[c].name);
   return axis;
+}
+
+/// Names that would run into each other become numbers, and a note tells what they stand for.
+void number_crowded_columns(Panel& panel, double frame_width) {
+  auto& ticks = panel.x.ticks;
+  const double room = frame_width / static_cast<double>(std::max<std::size_t>(1, ticks.size())) - 3.0;
+  if (std::all_of(ticks.begin(), ticks.end(),
+                  [&](const auto& tick) { return text_width(tick.second) <= room; }))
+    return;
+  std::string key;
+  for (std::size_t c = 0; c < ticks.size(); ++c) {
+    const std::string number = std::to_string(c + 1);
+    key += fmt::format("{}<b>{}</b>\u00a0{}", key.empty() ? "" : "; ", number, ticks[c].second);
+    ticks[c].second = number;
+  }
+  panel.notes.insert(panel.notes.begin(), key);
 }
 
 void add_notes(Panel& panel, const Map& map) {
@@ -291,14 +314,19 @@ std::string words_of_class(vv::StabilityClass stability) {
 
 Plot stability_plot_of(const vv::CaseVerdict& verdict, const vv::FigureRequest& request) {
   constexpr std::size_t many_panels = 6;
+  constexpr double room_beside_frame = 52.0;  // label and ticks of the axis, and the gap to the next [pt]
   vv::FigureRequest layout = request;
   layout.over = request.map_axis;
   const std::vector<Member> members = members_of(verdict, layout);
   const std::vector<Map> maps = maps_of(members, request);
   const Axis fractions = fraction_axis(maps);
   Plot plot;
-  for (const Map& map : maps) plot.panels.push_back(panel_of(map, fractions, request));
-  plot.columns = plot.panels.size() > many_panels ? 3 : plot.panels.size() > 1 ? 2 : 1;
+  plot.columns = maps.size() > many_panels ? 3 : maps.size() > 1 ? 2 : 1;
+  const double frame_width = plot.width / plot.columns - room_beside_frame;
+  for (const Map& map : maps) {
+    plot.panels.push_back(panel_of(map, fractions, request));
+    number_crowded_columns(plot.panels.back(), frame_width);
+  }
   plot.frame_aspect = plot.columns == 1 ? 0.62 : 0.85;
   if (plot.panels.empty()) {
     Panel nothing;

@@ -25,6 +25,7 @@ std::string words_of_class(vv::StabilityClass stability);
 ///   that diverged. Dashed is the limit by the matrix of one step, dotted the time step that the scene asks
 ///   for.
 /// - A panel for every value of `panels` and `series`; all share their axes.
+/// - Columns whose names would run into each other are numbered, and a note is the key.
 /// - Runs without a survey are named in a note.
 Plot stability_plot_of(const vv::CaseVerdict& verdict, const vv::FigureRequest& request);
 

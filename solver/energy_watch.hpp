@@ -32,8 +32,8 @@ class EnergyWatch {
     moment_ = now.moment;
   }
 
-  /// Looks at the particles after `elapsed` [s] since the last look. `gravity` [m/s^2] is what acts now,
-  /// `work_of_bodies` [J] what rigid bodies have done since the last look.
+  /// Looks at the particles after `elapsed` [s] since the last look. `gravity` [m/s^2] is the most that
+  /// acted in between, `work_of_bodies` [J] what rigid bodies have done since the last look.
   void look(const Particles<Dim, Real>& particles, const Vector<Dim, Real>& gravity, double elapsed,
             double work_of_bodies) {
     const Sums now = sums_of(particles);

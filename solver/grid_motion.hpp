@@ -9,11 +9,6 @@
 
 namespace mpm {
 
-/// Nodes with less than this fraction of the least particle mass count as empty: their weights are round-off
-/// (a weight is a difference of numbers up to 1, divided by the domain), so their motion would be noise.
-template <class Real>
-inline constexpr Real empty_node_mass_ratio = 64 * std::numeric_limits<Real>::epsilon();
-
 /// Edge conditions of a grid as ranges of constrained nodes: an edge's own nodes and the ghosts beyond it.
 template <int Dim, class Real>
 class EdgeConditions {

@@ -638,4 +638,45 @@ void check(const Scene& scene) {
   check_termination(scene);
 }
 
+Scene from_grid_corner(Scene scene) {
+  const PerAxis corner = scene.grid_lower;
+  const auto move = [&](PerAxis& place) {
+    for (std::size_t a = 0; a < place.size(); ++a) place[a] -= corner[a];
+  };
+  const auto vertical = static_cast<std::size_t>(scene.dimension - 1);
+  move(scene.grid_lower);
+  move(scene.grid_upper);
+  for (Body& body : scene.bodies) {
+    move(body.lower);
+    move(body.upper);
+    if (body.ring) move(body.ring->center);
+    if (!body.initial_stress) continue;
+    if (auto* ground = std::get_if<GeostaticStress>(&*body.initial_stress)) ground->surface -= corner[vertical];
+  }
+  for (RigidBody& body : scene.rigid_bodies) {
+    move(body.lower);
+    move(body.upper);
+  }
+  for (SurfaceLoad& load : scene.surface_loads) {
+    const double along = corner[static_cast<std::size_t>(1 - load.axis)];
+    load.begin -= along;
+    load.end -= along;
+  }
+  if (scene.driven_motion) {
+    const auto seen_from = [corner](const PerAxis& place) {
+      PerAxis moved = place;
+      for (std::size_t a = 0; a < moved.size(); ++a) moved[a] += corner[a];
+      return moved;
+    };
+    const auto of_corner = [&](auto& function) {
+      function = [inner = std::move(function), seen_from](const PerAxis& place, double time) {
+        return inner(seen_from(place), time);
+      };
+    };
+    of_corner(scene.driven_motion->velocity);
+    of_corner(scene.driven_motion->body_force);
+  }
+  return scene;
+}
+
 }  // namespace mpm

@@ -259,6 +259,10 @@ double loads_settled_after(const Scene& scene);
 /// When a run of the scene is over at the latest [s].
 double latest_end(const Scene& scene);
 
+/// The scene seen from the lower corner of its grid. Particles are kept in these coordinates, so that they lose no
+/// digits however far from the origin the scene lies.
+Scene from_grid_corner(Scene scene);
+
 /// Throws SceneError for the first value that makes the scene impossible to simulate.
 void check(const Scene& scene);
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "solver/lanes.hpp"
 #include "solver/scene.hpp"
@@ -13,7 +14,19 @@ namespace mpm {
 // Places and half sizes in this file are in cells. A Value is a number or lanes of them.
 
 /// Weights of a point particle: S = N(d) [Kiriyama15, section 2].
+///
+/// Exactly on a node a point has no weight at the next one, which it strains by all the same: its gradient there is that of
+/// any point of the cell. A node at a free surface would be empty and at rest, and the particle strained by its own
+/// velocity. So a point is weighed as if it kept `nearest` cells away from nodes: the root of the rounding, so little that
+/// nobody sees it. Then no weight is round-off, and every node that is reached at all moves as what reaches it.
 struct LinearShape {
+  template <class Real>
+  static constexpr Real nearest = sizeof(Real) == 8 ? Real(0x1p-26) : Real(0x1p-11);
+  /// Nodes with less than this fraction of the least particle mass count as empty: less than any particle can leave them,
+  /// which is `nearest` squared in the plane.
+  template <class Real>
+  static constexpr Real empty_share = nearest<Real> * nearest<Real> / 4;
+
   static constexpr int width = 2;         ///< nodes per axis a particle can reach
   static constexpr int nodes_before = 0;  ///< of them below the lower node of its cell
 
@@ -22,7 +35,10 @@ struct LinearShape {
   template <class Value>
   static void evaluate(const Value& place, const Value& /*half_size*/, Scalar<Value> cells_per_length,
                        std::array<Value, width>& weight, std::array<Value, width>& gradient) {
-    weight = {1 - place, place};
+    using std::max, std::min;
+    constexpr Scalar<Value> least = nearest<Scalar<Value>>;
+    const Value inside = max(Value(least), min(Value(1 - least), place));
+    weight = {1 - inside, inside};
     gradient = {Value(-cells_per_length), Value(cells_per_length)};
   }
 };
@@ -39,6 +55,11 @@ struct LinearShape {
 ///     2l S = l-''^2/2,   (1 - l+''^2 + l-'^2 - l-''^2)/2 - l-,   (1 - l-'^2 + l+''^2 - l+'^2)/2 + l+,
 ///     l+'^2/2 2l S' = -l-'',     l+'' - 1 + |l-|,                        1 - |l+| - l-', l+'
 struct GimpShape {
+  /// Nodes with less than this fraction of the least particle mass count as empty: their weights are round-off (a weight is
+  /// a difference of numbers up to 1, divided by the domain), so their motion would be noise.
+  template <class Real>
+  static constexpr Real empty_share = 64 * std::numeric_limits<Real>::epsilon();
+
   static constexpr int width = 4;  ///< a domain of 2l <= 2 cells reaches at most four nodes per axis
   static constexpr int nodes_before = 1;
 

@@ -34,49 +34,6 @@ double time_step_of(const Scene& scene) {
   return std::get<StableFraction>(scene.time_step).fraction * scene.cell_size / fastest_wave(scene);
 }
 
-/// The scene seen from the lower corner of its grid. Particles are kept in these coordinates, so that they lose no
-/// digits however far from the origin the scene lies.
-Scene from_grid_corner(Scene scene) {
-  const PerAxis corner = scene.grid_lower;
-  const auto move = [&](PerAxis& place) {
-    for (std::size_t a = 0; a < place.size(); ++a) place[a] -= corner[a];
-  };
-  const auto vertical = static_cast<std::size_t>(scene.dimension - 1);
-  move(scene.grid_lower);
-  move(scene.grid_upper);
-  for (Body& body : scene.bodies) {
-    move(body.lower);
-    move(body.upper);
-    if (body.ring) move(body.ring->center);
-    if (!body.initial_stress) continue;
-    if (auto* ground = std::get_if<GeostaticStress>(&*body.initial_stress)) ground->surface -= corner[vertical];
-  }
-  for (RigidBody& body : scene.rigid_bodies) {
-    move(body.lower);
-    move(body.upper);
-  }
-  for (SurfaceLoad& load : scene.surface_loads) {
-    const double along = corner[static_cast<std::size_t>(1 - load.axis)];
-    load.begin -= along;
-    load.end -= along;
-  }
-  if (scene.driven_motion) {
-    const auto seen_from = [corner](const PerAxis& place) {
-      PerAxis moved = place;
-      for (std::size_t a = 0; a < moved.size(); ++a) moved[a] += corner[a];
-      return moved;
-    };
-    const auto of_corner = [&](auto& function) {
-      function = [inner = std::move(function), seen_from](const PerAxis& place, double time) {
-        return inner(seen_from(place), time);
-      };
-    };
-    of_corner(scene.driven_motion->velocity);
-    of_corner(scene.driven_motion->body_force);
-  }
-  return scene;
-}
-
 /// [particle * components + component], particles in the order of their filling; zeros for absent fields.
 template <class Real, std::size_t Components>
 std::vector<double> interleave(const std::array<Field<Real>, Components>& fields,
@@ -175,10 +132,14 @@ class Simulation::Engine {
   bool advance() {
     if (ended_) return false;
     const double fraction = scene_.gravity.fraction(time_at(outcome_.step + 1));
+    largest_fraction_ = std::max(largest_fraction_, std::abs(fraction));
     if (step(outcome_.time, scene_.gravity.level * fraction)) {
       ++outcome_.step;
       outcome_.time = time_at(outcome_.step);
-      if (outcome_.step % steps_between_looks == 0 && scene_.watched) watch_energy(scene_.gravity.level * fraction);
+      if (outcome_.step % steps_between_looks == 0 && scene_.watched) {
+        watch_energy(scene_.gravity.level * largest_fraction_);
+        largest_fraction_ = 0.0;
+      }
     }
     if (!ended_ && is_finished()) {
       ended_ = true;
@@ -248,6 +209,7 @@ class Simulation::Engine {
 
   Scene scene_;
   double time_step_, loads_settled_after_;
+  double largest_fraction_ = 0.0;  ///< of gravity since the last look at the energy
   Outcome outcome_;
   bool ended_ = false;
 };

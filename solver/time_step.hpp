@@ -36,7 +36,7 @@ class TimeStepper {
         flip_(static_cast<Real>(scene.flip_fraction)),
         damping_(static_cast<Real>(scene.damping)),
         largest_half_size_(half_size_limit(scene)),
-        empty_mass_(empty_node_mass_ratio<Real> * static_cast<Real>(least_mass(scene))),
+        empty_mass_(SchemeTraits<scheme>::Shape::template empty_share<Real> * static_cast<Real>(least_mass(scene))),
         light_nodes_(light_node_fractions(scene)),
         average_(scene, grid_),
         blocks_(grid_, SchemeTraits<scheme>::Shape::nodes_before, particles_),

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "reports/document.hpp"
+#include "reports/last_good.hpp"
 #include "tests/support/demo_stability.hpp"
 
 namespace mpm::reports {
@@ -57,7 +58,7 @@ vv::CaseVerdict demo_extremes() {
     verdict.definition.runs.push_back({});
     verdict.runs.push_back(run);
   }
-  verdict.runs[0].behaviour.signal.drift = 0.0012;
+  verdict.runs[0].behaviour.signal.drift = 0.012;
   verdict.runs[0].gates = {class_gate("accurate", "accurate or inaccurate", true)};
   verdict.runs[1].record.outcome = {Ending::outside_grid, 1234, 0.5, 49, 1.04};
   verdict.runs[1].record.last_good = vv::Snapshot{"last good", 0.25, {}};
@@ -135,7 +136,7 @@ TEST(StabilitySection, TellsWhatBecameOfEveryExtreme) {
   const std::string text = section_of(campaign_of(demo_extremes()));
   for (const char* part :
        {"Very soft soil", ">accurate<", ">diverged<", ">oscillating<", "as expected", "SURPRISE",
-        "accurate or inaccurate", "drift\u00a00.0012", "ringing\u00a00.031", "particle 49",
+        "accurate or inaccurate", "drift\u00a00.012", "ringing\u00a00.031", "particle 49",
         "a particle left the grid", "value 1.04", "good up to <i>t</i> = 0.25", "Take smaller steps.",
         "oscillating &lt;somehow&gt;", "3 runs"})
     EXPECT_TRUE(has(text, part)) << part;
@@ -202,6 +203,50 @@ TEST(StabilitySection, CountsRepeatsOnOtherNumbersOfThreads) {
   run.metrics["bits_differ"] = 2.0;
   text = section_of(campaign_of(verdict));
   EXPECT_TRUE(has(text, "2 DIFFER"));
+}
+
+/// Two particles that went apart.
+vv::Snapshot demo_last_good(int dimension) {
+  vv::Snapshot state{"last good", 0.25, {}};
+  ParticleFields& fields = state.fields;
+  const auto size = static_cast<std::size_t>(dimension);
+  fields.dimension = dimension;
+  fields.body = {0, 0};
+  fields.mass = fields.volume = fields.initial_volume = {1.0, 1.0};
+  for (std::size_t k = 0; k < 2 * size; ++k) {
+    fields.position.push_back(0.1 * static_cast<double>(k));
+    fields.velocity.push_back(static_cast<double>(k) - 1.0);
+    fields.half_size.push_back(0.05);
+  }
+  fields.initial_position = fields.displacement = fields.position;
+  fields.stress.assign(dimension == 1 ? 2 : 8, -1.0);
+  return state;
+}
+
+TEST(StabilitySection, DrawsTheLastGoodStateOfAFailure) {
+  for (const int dimension : {1, 2}) {
+    vv::CaseVerdict verdict = demo_extremes();
+    verdict.definition.classification = vv::Classification();
+    verdict.runs[1].record.last_good = demo_last_good(dimension);
+    verdict.runs[1].record.outcome.particle = 1;
+    const vv::CampaignVerdict campaign = campaign_of(verdict);
+    const std::vector<DrawnFigure> figures = draw_figures(campaign);
+    ASSERT_EQ(figures.size(), 1u);
+    EXPECT_EQ(figures[0].failure, "");
+    EXPECT_FALSE(figures[0].png.empty());
+    const std::string html = report_html(campaign, figures);
+    EXPECT_TRUE(has(html, "<figure id=\"last-good\">"));
+    EXPECT_TRUE(has(html, "particle 1 (ringed), value 1.04"));
+    EXPECT_EQ(last_good_picture(failed_run_to_draw(campaign)).layout.panels.size(), 1u);
+  }
+}
+
+TEST(StabilitySection, DrawsNoLastGoodStateWithoutAFailure) {
+  vv::CaseVerdict verdict = demo_extremes();
+  verdict.definition.classification = vv::Classification();
+  verdict.runs[1].record.last_good.reset();
+  EXPECT_TRUE(draw_figures(campaign_of(verdict)).empty());
+  EXPECT_FALSE(has(report_html(campaign_of(verdict), {}), "last-good"));
 }
 
 }  // namespace

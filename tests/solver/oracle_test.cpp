@@ -138,25 +138,27 @@ struct Met {
   int farthest = 0;                         ///< cells by which a particle left its first cell
 };
 
-/// A plain run beside two of it that are disturbed by round-off in every step.
+/// A plain run beside some of it that are disturbed by round-off in every step.
 ///
 /// How far two right implementations may be apart is what round-off makes of a run, and that is seen from the
 /// disturbed ones: it is little while the motion is smooth, and much where the method is not a continuous
 /// function of its state: where a point crosses into another cell with the hat function's gradient, where a
 /// node turns round and the damping's force changes its side, at nodes with next to no mass. The disturbances
-/// are as large as the round-off of a step or larger; but two runs are few to tell the largest of what can
-/// happen, so the bound allows ten times the larger of their differences. What their disturbances happen not
+/// are as large as the round-off of a step or larger; but they are few to tell the largest of what can
+/// happen, so the bound allows ten times the largest of their differences. What their disturbances happen not
 /// to reach is bounded by 32 roundings of the field's scale a step, for about as many terms in a sum.
 ///
 /// Once the disturbed runs are further apart than `predictable` of a field's scale, no comparison means much.
 class Witnesses {
  public:
-  Witnesses(const Scene& scene, double time_step)
+  Witnesses(const Scene& scene, double time_step, int disturbed)
       : plain(plain_run(scene, time_step, 0)),
-        disturbed_{plain_run(scene, time_step, 1), plain_run(scene, time_step, 2)},
         round_off_(scene.precision == Precision::float32 ? std::numeric_limits<float>::epsilon()
                                                          : std::numeric_limits<double>::epsilon()),
-        predictable_(scene.precision == Precision::float32 ? 1e-2 : 1e-8) {}
+        predictable_(scene.precision == Precision::float32 ? 1e-2 : 1e-8) {
+    for (int k = 1; k <= disturbed; ++k)
+      disturbed_.push_back(plain_run(scene, time_step, static_cast<std::uint64_t>(k)));
+  }
 
   /// Whether all could take a step.
   bool advance() {
@@ -207,7 +209,7 @@ class Witnesses {
     impulse_bound = 10 * spread + 32 * static_cast<double>(steps) * round_off_ * momentum_;
   }
 
-  std::array<std::unique_ptr<PlainRun>, 2> disturbed_;
+  std::vector<std::unique_ptr<PlainRun>> disturbed_;
   double round_off_, predictable_;
   double momentum_ = 0;
   std::int64_t crossings_apart_ = 0;
@@ -234,11 +236,39 @@ void note_places(const Scene& scene, const ParticleFields& fields, bool is_first
   if (is_first_order) met.most_away_before_order = std::max(met.most_away_before_order, away);
 }
 
+/// The same scene with the lower corner of its grid at the origin, from where the solver counts places: a plain run
+/// that counts them from elsewhere rounds them otherwise. What drives bodies may be seen from another place.
+Scene moved_to_origin(Scene scene) {
+  const PerAxis corner = scene.grid_lower;
+  const auto move = [&](PerAxis& place) {
+    for (std::size_t a = 0; a < place.size(); ++a) place[a] -= corner[a];
+  };
+  move(scene.grid_upper);
+  move(scene.grid_lower);
+  for (Body& body : scene.bodies) {
+    move(body.lower);
+    move(body.upper);
+    if (body.ring) move(body.ring->center);
+  }
+  for (RigidBody& body : scene.rigid_bodies) {
+    move(body.lower);
+    move(body.upper);
+  }
+  for (SurfaceLoad& load : scene.surface_loads) {
+    load.begin -= corner[static_cast<std::size_t>(1 - load.axis)];
+    load.end -= corner[static_cast<std::size_t>(1 - load.axis)];
+  }
+  return scene;
+}
+
 /// Runs a scene with the solver and plainly, `steps` steps or until it fails or nobody can tell where it
 /// goes, and expects the same particles every `between` steps and the same failure.
-Met compare(const Scene& scene, std::int64_t steps, std::int64_t between = 10) {
+/// `disturbed`: how many witnesses tell what round-off can do.
+Met compare(const Scene& anywhere, std::int64_t steps, std::int64_t between = 10, int disturbed = 2) {
+  Scene scene = moved_to_origin(anywhere);
+  scene.watched = false;  // where energy comes from is nothing the plain run asks
   Simulation simulation(scene);
-  Witnesses witnesses(scene, simulation.time_step());
+  Witnesses witnesses(scene, simulation.time_step(), disturbed);
   Met met;
   std::int64_t crossings_when_ordered = 0;
   for (std::int64_t step = 1; step <= steps; ++step) {
@@ -313,7 +343,9 @@ TEST_P(RandomScenes, MoveAsTheyDoPlainly) {
     ASSERT_EQ(scene.dimension, GetParam().dimension);
     ASSERT_EQ(scene.precision, GetParam().precision);
     const std::int64_t steps = 40 + 10 * static_cast<std::int64_t>(number % 17);
-    const Met met = compare(scene, steps);
+    // A plane in float has the most places where round-off can strike: two do not find them all.
+    const bool is_rough = scene.dimension == 2 && scene.precision == Precision::float32;
+    const Met met = compare(scene, steps, 10, is_rough ? 4 : 2);
     ASSERT_FALSE(HasFailure());
     to_end += met.was_compared_to_end;
     steps_compared += met.steps;

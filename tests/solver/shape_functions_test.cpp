@@ -61,7 +61,9 @@ TYPED_TEST(EveryShapeFunction, ReproducesLinearFieldsAndTheirGradient) {
       value += s.weight[k] * (s.node(k) - position);
       slope += s.gradient[k] * (s.node(k) - position);
     }
-    ASSERT_NEAR(value, 0.0, 4 * round_off(half_size));
+    // A point is weighed as if a little beside a node that it is on.
+    constexpr double moved = TypeParam::nodes_before == 0 ? 2 * LinearShape::nearest<double> : 0.0;
+    ASSERT_NEAR(value, 0.0, moved + 4 * round_off(half_size));
     ASSERT_NEAR(slope, 1.0, 8 * round_off(half_size));
   });
 }

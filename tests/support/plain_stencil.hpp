@@ -46,7 +46,8 @@ class PlainStencil {
           weight[a][k] = (hat_integral(distance + size) - hat_integral(distance - size)) / (2 * size);
           gradient[a][k] = (hat(distance + size) - hat(distance - size)) / (2 * size);
         } else {
-          weight[a][k] = hat(distance);
+          constexpr Real nearest = LinearShape::nearest<Real>;
+          weight[a][k] = std::clamp(hat(distance), nearest, 1 - nearest);
           gradient[a][k] = k == 0 ? Real(-1) : Real(1);
         }
       }

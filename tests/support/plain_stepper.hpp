@@ -36,8 +36,9 @@ class PlainStepper {
 
   /// With `disturbance` other than 0, velocities, stresses, places and weights are changed by random
   /// round-off in every step: what then becomes of the run is as good as what becomes of it without.
-  PlainStepper(const Scene& scene, double time_step, std::uint64_t disturbance = 0)
-      : scene_(scene),
+  PlainStepper(Scene scene, double time_step, std::uint64_t disturbance = 0)
+      : corner_(scene.grid_lower),
+        scene_(scene = from_grid_corner(scene)),
         particles_(fill_bodies<Dim, Real>(scene, SchemeTraits<scheme>::has_domain)),
         grid_(scene),
         edges_(scene, grid_),
@@ -45,7 +46,7 @@ class PlainStepper {
         loading_(scene, time_step, particles_),
         seconds_(time_step),
         time_step_(static_cast<Real>(time_step)),
-        empty_mass_(empty_node_mass_ratio<Real> * static_cast<Real>(least_mass(scene, particles_))),
+        empty_mass_(SchemeTraits<scheme>::Shape::template empty_share<Real> * static_cast<Real>(least_mass(scene, particles_))),
         start_(particles_.position),
         travel_(static_cast<std::size_t>(particles_.count())),
         growth_(travel_.size()),
@@ -78,9 +79,9 @@ class PlainStepper {
   ParticleFields fields() const {
     ParticleFields fields;
     fields.dimension = Dim;
-    fields.initial_position = interleaved(start_);
+    fields.initial_position = from_origin(interleaved(start_));
     fields.displacement = interleaved(particles_.displacement);
-    fields.position = interleaved(particles_.position);
+    fields.position = from_origin(interleaved(particles_.position));
     fields.velocity = interleaved(particles_.velocity);
     fields.half_size = interleaved(particles_.half_size);
     fields.stress = interleaved(particles_.stress);
@@ -547,6 +548,12 @@ class PlainStepper {
     return all;
   }
 
+  std::vector<double> from_origin(std::vector<double> places) const {
+    for (std::size_t k = 0; k < places.size(); ++k) places[k] += corner_[k % Dim];
+    return places;
+  }
+
+  PerAxis corner_;  ///< of the grid, which everything below is seen from
   Scene scene_;
   Particles<Dim, Real> particles_;
   Grid<Dim, Real> grid_;

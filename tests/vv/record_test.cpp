@@ -16,6 +16,7 @@
 
 #include "tests/support/column_scene.hpp"
 #include "tests/support/scratch_directory.hpp"
+#include "solver/energy.hpp"
 #include "vv/sampler.hpp"
 
 namespace mpm::vv {
