@@ -42,7 +42,8 @@ constexpr std::array left_out{"gates",
                               "figures",
                               "repeat_on_other_threads",
                               "repeat_on_threads",
-                              "figure_of_paper"};
+                              "figure_of_paper",
+                              "notes"};
 
 bool names_hencky(const Case& asked) {
   return std::find(asked.references.begin(), asked.references.end(), "hencky") != asked.references.end();
@@ -136,7 +137,7 @@ Case survey_case(const Case& asked, const Json& survey, std::size_t most_runs) {
     const Json limits = text["classification"].value("limits", Json::object());
     text["classification"] = {{"limits", limits}};
   }
-  if (!text.contains("notes")) text["notes"] = Json::array();
+  text["notes"] = Json::array();
   const std::size_t axes = axes_within(asked.sweep, most_runs);
   keep_axes(asked, axes, text);
   text["id"] = asked.id + "_stability";
