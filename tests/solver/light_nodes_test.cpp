@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 #include "solver/simulation.hpp"
 
@@ -128,22 +129,19 @@ TEST(LightNodes, DoNotStrainWhatMovesAsOne) {
 
 TEST(LightNodes, DoNotStrainWhatPassesANodeByRoundOff) {
   // A sliver that weighs nothing has no velocity of its own: taken as standing still, it would strain the particle by
-  // all of its speed.
+  // all of its speed. So a point is weighed as if a little beside the node, with light nodes and without.
   Scene scene = free_bar(1e-15, 2, 0.5);
   scene.grid_lower[0] = -1.0;
   scene.grid_upper[0] = 2.0;
   scene.bodies[0].initial_stress.reset();
   scene.bodies[0].velocity[0] = 3.0;
   scene.light_nodes = 0.5;
-  Simulation simulation(scene);
-  ASSERT_TRUE(simulation.advance());
-  for (const double stress : simulation.particles().stress) EXPECT_LT(std::abs(stress), 1e-5);
-  scene.light_nodes.reset();
-  Simulation plain(scene);
-  plain.advance();
-  double largest = 0.0;
-  for (const double stress : plain.particles().stress) largest = std::max(largest, std::abs(stress));
-  EXPECT_GT(largest, 1e3) << "the particle is not where the test wants it";
+  for (const std::optional<double> light_nodes : {std::optional<double>(0.5), std::optional<double>()}) {
+    scene.light_nodes = light_nodes;
+    Simulation simulation(scene);
+    ASSERT_TRUE(simulation.advance());
+    for (const double stress : simulation.particles().stress) EXPECT_LT(std::abs(stress), 1e-5);
+  }
 }
 
 TEST(LightNodes, LeaveMomentumAsItIs) {
