@@ -87,6 +87,11 @@ FeatureScene changed(Json scene, const char* what, const Change& change, int thr
   return {what, std::move(scene), threads};
 }
 
+FeatureScene unwatched(FeatureScene scene) {
+  scene.watched = false;
+  return scene;
+}
+
 Change soil(const char* cohesion) {
   return set("/bodies/0/material", {{"law", "mohr_coulomb"},
                                     {"youngs_modulus", "1000 kPa"},
@@ -154,6 +159,22 @@ std::vector<Feature> of_the_particles() {
       keyed("feature/strain_sums", "sums of strain", "/sums_strain", "summed", true, "sums_strain: false",
             false),
       keyed("feature/work_sums", "sums of work", "/sums_work", "summed", true, "sums_work: false", false),
+      keyed("feature/compensated_sums", "compensated sums", "/compensated_sums", "what rounding cuts off is kept", true,
+            "compensated_sums: false", false),
+      {"feature/light_nodes",
+       "light nodes",
+       changed(footing(), "MPM, points", set("/scheme", "mpm")),
+       changed(footing(), "MPM, light nodes made slow",
+               [](Json& scene) {
+                 scene["scheme"] = "mpm";
+                 scene["light_nodes"] = 0.5;
+               }),
+       std::nullopt},
+      {"feature/energy_watch",
+       "watch over energy",
+       unwatched({"nobody looks", footing()}),
+       {"a look every 64 steps, as in every run", footing()},
+       std::nullopt},
       keyed("feature/locking_control", "locking control", "/bodies/0/locking_control",
             "averages over cells in the ground", "cell_average", "locking_control: none", "none"),
   };

@@ -47,6 +47,7 @@ class Entry {
  public:
   explicit Entry(const FeatureScene& scene) : what_(scene.what), threads_(scene.threads) {
     scene_ = vv::read_checked({"/scene", scene.text}).scene;
+    scene_.watched = scene.watched;
     build();
     particles_ = simulation_->particle_count();
     bytes_ = simulation_->memory();

@@ -16,6 +16,7 @@ struct FeatureScene {
   std::string what;  ///< what it has, or has in its place, in a few words
   Json text;         ///< of the key `scene`
   int threads = 1;
+  bool watched = true;  ///< for energy that comes from nowhere, as every run of a case is
 };
 
 /// What a case may say in so many words and need not say.

@@ -843,7 +843,7 @@ Json to_json(const Record& record) {
           {"last_good", record.last_good ? snapshots_to_json({*record.last_good}) : Json::array()},
           {"model", model_to_json(record.model)},
           {"paths", paths_to_json(record.paths)},
-          {"survey", record.survey ? survey_to_json(*record.survey) : Json()},
+          {"survey", record.survey ? survey_to_json(*record.survey) : Json::object()},
           {"measured", measured_to_json(record.measured)}};
 }
 
@@ -882,7 +882,7 @@ Record record_from_json(const Json& json) {
   if (!good.empty()) record.last_good = good.front();
   record.model = model_from_json(json.at("model"));
   record.paths = paths_from_json(json.at("paths"));
-  if (!json.at("survey").is_null()) record.survey = survey_from_json(json.at("survey"));
+  if (!json.at("survey").empty()) record.survey = survey_from_json(json.at("survey"));
   record.measured = measured_from_json(json.at("measured"));
   return record;
 }

@@ -102,6 +102,25 @@ TEST(StabilityFigures, MarkClassesByTheirSymbols) {
   }
 }
 
+TEST(StabilityFigures, LeaveNoSymbolOutBehindOneOfAnotherClass) {
+  vv::CaseVerdict verdict = support::demo_maps();
+  auto& points = verdict.runs[0].record.survey->points;
+  points.resize(3);
+  const Class classes[] = {Class::accurate, Class::drifting, Class::accurate};
+  for (std::size_t k = 0; k < 3; ++k) {
+    points[k].fraction = 0.1 + 0.001 * static_cast<double>(k);
+    points[k].stability = classes[k];
+  }
+  const auto drawn_in_first = [&] {
+    const Panel panel = map_of(verdict).panels[0];
+    const PlotCurve& symbols = *curves_called(panel, words_of_class(Class::accurate)).at(0);
+    return std::count(symbols.x.begin(), symbols.x.end(), 0.0);
+  };
+  EXPECT_EQ(drawn_in_first(), 2);
+  points[1].stability = Class::accurate;
+  EXPECT_EQ(drawn_in_first(), 1);
+}
+
 TEST(StabilityFigures, DrawTheBoundaryBetweenStableAndUnstable) {
   vv::CaseVerdict verdict = support::demo_maps();
   verdict.runs[1].record.survey->unstable = 0.0;  // none diverged: no boundary there

@@ -115,12 +115,13 @@ TEST(CompensatedSums, TakeAwayTheRoundingOfEveryLaw) {
     EXPECT_LT(rounding_errors(scene).displacement, plain.displacement / 10) << material.index();
   }
   for (const Material& material : {Material(NeoHookean{1e7, 0.3}), Material(LinearElastic{1e7, 0.3})}) {
-    Scene scene = slow_column(Scheme::ugimp, UpdateOrder::musl);
+    // Points that stay in their cells: a domain whose edge is on a node reaches beyond it by round-off, and how that
+    // sliver moves is a difference of float from double that no sum has made.
+    Scene scene = slow_column(Scheme::mpm, UpdateOrder::musl);
     scene.dimension = 2;
     scene.cell_size = 0.1;
     scene.grid_upper = {0.3, 1.2};
     scene.edges = {{{Condition::roller, Condition::free}, {Condition::roller, Condition::free}}};
-    // No edge on a node: whether the sliver beyond it has mass is for the last digit to say, not for the sums.
     scene.bodies[0].upper = {0.25, 1.05};
     scene.bodies[0].particles_per_cell = {2, 2};
     scene.gravity.acceleration = {0.0, -9.8};

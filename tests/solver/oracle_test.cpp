@@ -236,36 +236,11 @@ void note_places(const Scene& scene, const ParticleFields& fields, bool is_first
   if (is_first_order) met.most_away_before_order = std::max(met.most_away_before_order, away);
 }
 
-/// The same scene with the lower corner of its grid at the origin, from where the solver counts places: a plain run
-/// that counts them from elsewhere rounds them otherwise. What drives bodies may be seen from another place.
-Scene moved_to_origin(Scene scene) {
-  const PerAxis corner = scene.grid_lower;
-  const auto move = [&](PerAxis& place) {
-    for (std::size_t a = 0; a < place.size(); ++a) place[a] -= corner[a];
-  };
-  move(scene.grid_upper);
-  move(scene.grid_lower);
-  for (Body& body : scene.bodies) {
-    move(body.lower);
-    move(body.upper);
-    if (body.ring) move(body.ring->center);
-  }
-  for (RigidBody& body : scene.rigid_bodies) {
-    move(body.lower);
-    move(body.upper);
-  }
-  for (SurfaceLoad& load : scene.surface_loads) {
-    load.begin -= corner[static_cast<std::size_t>(1 - load.axis)];
-    load.end -= corner[static_cast<std::size_t>(1 - load.axis)];
-  }
-  return scene;
-}
-
 /// Runs a scene with the solver and plainly, `steps` steps or until it fails or nobody can tell where it
 /// goes, and expects the same particles every `between` steps and the same failure.
 /// `disturbed`: how many witnesses tell what round-off can do.
 Met compare(const Scene& anywhere, std::int64_t steps, std::int64_t between = 10, int disturbed = 2) {
-  Scene scene = moved_to_origin(anywhere);
+  Scene scene = anywhere;
   scene.watched = false;  // where energy comes from is nothing the plain run asks
   Simulation simulation(scene);
   Witnesses witnesses(scene, simulation.time_step(), disturbed);

@@ -44,13 +44,13 @@ TEST(SignalShape, OfASineIsItsEffectiveValueAndHardlyADrift) {
   const double amplitude = 0.04;
   const SignalShape shape = shape_of([&](double t) { return 1 + amplitude * std::sin(20 * std::numbers::pi * t); });
   EXPECT_NEAR(shape.ringing, amplitude / std::sqrt(2.0), 0.05 * amplitude);
-  EXPECT_LT(shape.drift, 0.1 * amplitude);
+  EXPECT_LT(shape.drift, 0.15 * amplitude);
 }
 
 TEST(SignalShape, SeesARingingFromSampleToSample) {
   int sign = 1;
   const SignalShape shape = shape_of([&](double) { return 1 + 0.03 * (sign = -sign); });
-  EXPECT_NEAR(shape.ringing, 0.03, 1e-6);
+  EXPECT_NEAR(shape.ringing, 0.03, 1e-5);
   EXPECT_EQ(shape.spike, 0.0);
 }
 

@@ -64,7 +64,7 @@ TEST(Classification, OfAColumnAtRestIsAccurate) {
 }
 
 TEST(Classification, OfAColumnWithoutDampingIsOscillatingAndTurnsTheGateRed) {
-  const CaseVerdict verdict = verdict_of(R"({"scene": {"damping": 0}})");
+  const CaseVerdict verdict = verdict_of(R"({"scene": {"damping": 0, "gravity": {"loading": {"duration": "0.1 s"}}}})");
   EXPECT_EQ(verdict.runs[0].stability, StabilityClass::oscillating);
   EXPECT_EQ(verdict.status, CaseStatus::fail);
   EXPECT_NE(verdict.runs[0].gates.at(0).detail.find("ringing"), std::string::npos);
@@ -83,7 +83,7 @@ TEST(Classification, OfTheWrongSettlementIsInaccurate) {
 }
 
 TEST(Classification, OfTooLongStepsIsDivergedWithTheLastGoodState) {
-  const CaseVerdict verdict = verdict_of(R"({"scene": {"time_step": {"stable_fraction": 2.5}},
+  const CaseVerdict verdict = verdict_of(R"({"scene": {"damping": 0, "time_step": {"stable_fraction": 2.5}},
     "gates": [ { "id": "sound", "metric": "class", "is": ["diverged", "refused"], "basis": "theory", "reason": "too long" } ]})");
   const RunVerdict& run = verdict.runs[0];
   EXPECT_EQ(run.stability, StabilityClass::diverged);

@@ -145,6 +145,8 @@ TEST(Rounding, TakesTheOrderThatThreeSizesTellIfItIsLower) {
   EXPECT_NEAR(at_finest(1.5), 0.01 * std::pow(0.025, 1.5), 1e-3 * 0.01 * std::pow(0.025, 1.5));
   // Lower than the lowest, higher than the highest: the estimate is below the error it stands for.
   EXPECT_LT(at_finest(0.5), 0.6 * 0.01 * std::pow(0.025, 0.5));
+  const double slow = 0.01 * (std::pow(0.05, 0.7) - std::pow(0.025, 0.7));
+  EXPECT_NEAR(at_finest(0.7), slow, 1e-2 * slow);  // as if of order 1
   EXPECT_GT(at_finest(3.0), 0.01 * std::pow(0.025, 3.0));
   const double difference = 0.01 * (std::pow(0.05, 3.0) - std::pow(0.025, 3.0));
   EXPECT_NEAR(at_finest(3.0), difference / 3.0, 1e-3 * difference);
@@ -177,6 +179,23 @@ TEST(Rounding, ComparesParticlesThatStartInTheSamePlace) {
     EXPECT_EQ(same.rounding[0].digits_of_stress, 17.0);
     std::swap(records[1].profile.stress.front(), records[1].profile.stress.back());
     EXPECT_GT(judged(definition, records).rounding[0].stress, 1e-2);
+  }
+}
+
+TEST(Rounding, MatchesParticlesInAnotherOrder) {
+  for (int dimension : {1, 2}) {
+    Json text = text_of_case(dimension);
+    text["sweep"][1]["variants"][1] = {{"name", "float"},
+                                       {"set", {{"/scene/particle_order", {{"shuffle", 7}}}}}};
+    const Case definition = parsed(text);
+    const CaseVerdict verdict =
+        judged(definition, records_of(definition, wrong_by(1.0, 2.0, 0.0), wrong_by(1.0, 2.0, 0.0)));
+    for (const RoundingRow& row : verdict.rounding) {
+      EXPECT_EQ(row.displacement, 0.0);
+      EXPECT_EQ(row.stress, 0.0);
+      EXPECT_NE(verdict.runs[row.run].record.profile.stress,
+                verdict.runs[row.baseline].record.profile.stress);
+    }
   }
 }
 
