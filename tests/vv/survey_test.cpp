@@ -82,7 +82,40 @@ TEST(Survey, JudgesByHenckyOrByTheSmallestStep) {
   EXPECT_EQ(against_own.points[0].error, 0.0);
   EXPECT_GT(against_own.points[1].error, 0.0);
   EXPECT_LT(against_own.points[1].error, 1e-2);
-  EXPECT_EQ(against_hencky.accurate, 0.4) << "up to twice the error of the smallest step is accurate";
+  Json strict = column_text();
+  strict["stability"].update({{"to", 0.4}, {"points", 2}, {"accuracy", 1e-9}});
+  const Case twice = column(strict);
+  EXPECT_EQ(survey_of(twice, twice.runs[0], *twice.survey, {}).accurate, 0.4)
+      << "twice the least error is accurate";
+  strict["stability"]["times_least"] = 1e-3;
+  const Case none = column(strict);
+  EXPECT_EQ(survey_of(none, none.runs[0], *none.survey, {}).accurate, 0.0);
+}
+
+TEST(Survey, HasTheErrorsOfAPlainRun) {
+  Json text = column_text();
+  text["scene"]["gravity"]["level"] = 10;
+  text["stability"].update({{"to", 0.4}, {"points", 2}});
+  const Case surveyed = column(text);
+  const Survey survey = survey_of(surveyed, surveyed.runs[0], *surveyed.survey, {});
+  text.erase("stability");
+  text["gates"][0]["metric"] = "completed";
+  const Case plain = column(text);
+  const auto metrics = judge(plain, plain.runs[0], unsigned_record(plain, plain.runs[0], {})).metrics;
+  const double expected = std::max(metrics.at("hencky.stress.l2"), metrics.at("hencky.displacement.l2"));
+  // The weights of displacements are volumes before and after, 4 % apart in the mean.
+  EXPECT_NEAR(survey.points[0].error / expected, 1, 0.04);
+}
+
+TEST(Survey, TakesTheLeastLimitForTheMargin) {
+  Json text = column_text();
+  text["stability"].update({{"to", 0.3}, {"points", 2}});
+  const Case definition = column(text);
+  const Record record = unsigned_record(definition, definition.runs[0], {});
+  const auto metrics = judge(definition, definition.runs[0], record).metrics;
+  EXPECT_GT(metrics.at("stability.linear_limit"), 0.6);
+  EXPECT_NEAR(metrics.at("stability.margin"), 0.3 / 0.2, 1e-9) << "no run beyond it says that more is stable";
+  EXPECT_FALSE(metrics.contains("stability.unstable"));
 }
 
 TEST(Survey, CallsAColumnThatStillSwingsOscillating) {
