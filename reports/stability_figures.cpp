@@ -182,7 +182,7 @@ Axis fraction_axis(const std::vector<Map>& maps) {
         }
     }
   Axis axis;
-  axis.label = "time step · wave speed / cell size";
+  axis.label = "Δt c / h";  // in full it would be longer than a panel is high
   axis.scale = Scale::logarithmic;
   axis.range = extent.empty() ? Range{0.1, 3.0} : Range{extent.lower, extent.upper};
   for (int exponent = -9; exponent < 9; ++exponent)

@@ -77,24 +77,82 @@ std::string advice_on(const vv::Survey& survey) {
   return fmt::format("its own is {}; {} times as much would be, too", how, number_markup(room, 2));
 }
 
+/// More surveys than this are told method by method, by their least; every one of them is in its map and in results.json.
+constexpr std::size_t most_single_surveys = 12;
+
+using Surveys = std::vector<const vv::RunVerdict*>;
+
+/// The surveys of a case one by one or, of many, those of the same scheme, update order and gravity together.
+std::vector<Surveys> groups_of_surveys(const vv::CaseVerdict& c) {
+  Surveys all;
+  std::map<std::string, Surveys> groups;
+  std::vector<std::string> order;
+  for (std::size_t k = 0; k < c.runs.size(); ++k) {
+    if (!c.runs[k].record.survey) continue;
+    all.push_back(&c.runs[k]);
+    const Scene& scene = c.definition.runs[k].scene;
+    const std::string method = fmt::format("{} {} {} {}", static_cast<int>(scene.scheme), static_cast<int>(scene.update_order),
+                                           scene.gravity.level, scene.light_nodes.value_or(0.0));
+    if (!groups.contains(method)) order.push_back(method);
+    groups[method].push_back(&c.runs[k]);
+  }
+  std::vector<Surveys> told;
+  if (all.size() <= most_single_surveys) {
+    for (const vv::RunVerdict* run : all) told.push_back({run});
+  } else {
+    for (const std::string& method : order) told.push_back(groups[method]);
+  }
+  return told;
+}
+
+/// What all of them have in common, and how many they are.
+std::string name_of_surveys(const Surveys& surveys) {
+  Parameters common = surveys.front()->parameters;
+  for (const vv::RunVerdict* run : surveys)
+    std::erase_if(common, [&](const auto& parameter) {
+      return std::find(run->parameters.begin(), run->parameters.end(), parameter) == run->parameters.end();
+    });
+  if (surveys.size() == 1) return name_of_run(common);
+  return (common.empty() ? std::string() : name_of_run(common) + ", ") + plural(surveys.size(), "scene");
+}
+
+const vv::Survey& survey_of(const vv::RunVerdict* run) { return *run->record.survey; }
+
+/// The survey with the least of a number.
+template <class Number>
+const vv::Survey& least_by(const Surveys& surveys, Number&& number) {
+  return survey_of(*std::min_element(surveys.begin(), surveys.end(), [&](const auto* a, const auto* b) {
+    return number(survey_of(a)) < number(survey_of(b));
+  }));
+}
+
+data limit_entry(const vv::CaseVerdict& c, const Surveys& surveys) {
+  const vv::Survey& by_matrix = least_by(surveys, [](const vv::Survey& s) { return s.linear.limit; });
+  const vv::Survey& by_runs = least_by(surveys, [](const vv::Survey& s) { return s.stable; });
+  const vv::Survey& accurate = least_by(surveys, [](const vv::Survey& s) { return s.accurate; });
+  const vv::Survey& worst = least_by(surveys, bearable);
+  std::vector<double> formulas;
+  for (const vv::RunVerdict* run : surveys) {
+    const auto formula = run->metrics.find("stability.formula");
+    if (formula != run->metrics.end()) formulas.push_back(formula->second);
+  }
+  const bool all_known = formulas.size() == surveys.size();
+  return object({{"case_id", c.definition.id},
+                 {"name", name_of_surveys(surveys)},
+                 {"own", fraction_or_dash(worst.own)},
+                 {"matrix", fraction_or_dash(by_matrix.linear.limit)},
+                 {"matrix_lack", by_matrix.linear.lack},
+                 {"formula", all_known ? number_markup(*std::min_element(formulas.begin(), formulas.end()), 3) : "–"},
+                 {"runs", limit_by_runs(by_runs)},
+                 {"accurate", accurate.points.empty() ? "–" : fraction_or_dash(accurate.accurate)},
+                 {"error", accurate.points.empty() ? "" : accurate.error_name},
+                 {"advice", advice_on(worst)}});
+}
+
 data limit_entries(const vv::CampaignVerdict& verdict) {
   data entries = list();
   for (const vv::CaseVerdict& c : verdict.cases)
-    for (const vv::RunVerdict& run : c.runs) {
-      if (!run.record.survey) continue;
-      const vv::Survey& survey = *run.record.survey;
-      const auto formula = run.metrics.find("stability.formula");
-      entries << object({{"case_id", c.definition.id},
-                         {"name", name_of_run(run.parameters)},
-                         {"own", fraction_or_dash(survey.own)},
-                         {"matrix", fraction_or_dash(survey.linear.limit)},
-                         {"matrix_lack", survey.linear.lack},
-                         {"formula", formula == run.metrics.end() ? "–" : number_markup(formula->second, 3)},
-                         {"runs", limit_by_runs(survey)},
-                         {"accurate", survey.points.empty() ? "–" : fraction_or_dash(survey.accurate)},
-                         {"error", survey.error_name},
-                         {"advice", advice_on(survey)}});
-    }
+    for (const Surveys& surveys : groups_of_surveys(c)) entries << limit_entry(c, surveys);
   return entries;
 }
 
