@@ -105,13 +105,19 @@ std::vector<Surveys> groups_of_surveys(const vv::CaseVerdict& c) {
   return told;
 }
 
-/// What all of them have in common, and how many they are.
-std::string name_of_surveys(const Surveys& surveys) {
-  Parameters common = surveys.front()->parameters;
-  for (const vv::RunVerdict* run : surveys)
+/// What all runs have in common.
+Parameters common_to(const std::vector<const vv::RunVerdict*>& runs) {
+  Parameters common = runs.front()->parameters;
+  for (const vv::RunVerdict* run : runs)
     std::erase_if(common, [&](const auto& parameter) {
       return std::find(run->parameters.begin(), run->parameters.end(), parameter) == run->parameters.end();
     });
+  return common;
+}
+
+/// What all of them have in common, and how many they are.
+std::string name_of_surveys(const Surveys& surveys) {
+  const Parameters common = common_to(surveys);
   if (surveys.size() == 1) return name_of_run(common);
   return (common.empty() ? std::string() : name_of_run(common) + ", ") + plural(surveys.size(), "scene");
 }
@@ -196,7 +202,8 @@ std::string diagnosis_cell(const vv::RunVerdict& run, const vv::RunRequest* requ
     return text;
   }
   const vv::GateResult* gate = class_gate_of(run);
-  return gate ? escaped(gate->detail) : "";
+  const bool is_well = run.stability == Class::accurate;
+  return gate && !is_well ? escaped(gate->detail) : "";
 }
 
 data extreme_row(const vv::CaseVerdict& c, std::size_t number) {
@@ -213,6 +220,42 @@ data extreme_row(const vv::CaseVerdict& c, std::size_t number) {
                  {"verdict", !gate          ? chip("open", "no gate")
                              : gate->good() ? chip("pass", "as expected")
                                             : chip("fail", "SURPRISE")}});
+}
+
+/// Of runs alike in what was expected and found: the one whose error is largest, which tells for all.
+const vv::RunVerdict& telling(const std::vector<const vv::RunVerdict*>& runs) {
+  return **std::max_element(runs.begin(), runs.end(),
+                            [](const auto* a, const auto* b) { return a->behaviour.error < b->behaviour.error; });
+}
+
+/// Runs of one expectation and one class, in one row.
+data expectation_row(const vv::CaseVerdict& c, const std::vector<const vv::RunVerdict*>& runs) {
+  const vv::RunVerdict& shown = telling(runs);
+  const auto number = static_cast<std::size_t>(&shown - c.runs.data());
+  const Parameters common = common_to(runs);
+  data row = extreme_row(c, number);
+  const std::string name = common.empty() ? "all sorts" : name_of_run(common);
+  row.set("name", runs.size() == 1 ? name_of_run(shown.parameters)
+                                   : name + "<br><small>" + plural(runs.size(), "run") + ", told by " +
+                                         name_of_run(shown.parameters) + "</small>");
+  const vv::GateResult* gate = class_gate_of(shown);
+  row.set("reason", gate ? gate->reason : "");
+  return row;
+}
+
+/// The runs of a case by gate and class found, in the order in which they come.
+data expectation_rows(const vv::CaseVerdict& c) {
+  std::map<std::string, std::vector<const vv::RunVerdict*>> groups;
+  std::vector<std::string> order;
+  for (const vv::RunVerdict& run : c.runs) {
+    const vv::GateResult* gate = class_gate_of(run);
+    const std::string key = (gate ? gate->id : "") + "/" + (run.stability ? vv::name_of(*run.stability) : "");
+    if (!groups.contains(key)) order.push_back(key);
+    groups[key].push_back(&run);
+  }
+  data rows = list();
+  for (const std::string& key : order) rows << expectation_row(c, groups[key]);
+  return rows;
 }
 
 bool classifies(const vv::CaseVerdict& c) {
@@ -239,6 +282,7 @@ void set_extremes(data& page, const vv::CampaignVerdict& verdict) {
       surprising[*c.runs[run].stability] += surprise;
     }
     entry.set("rows", rows);
+    entry.set("expectations", expectation_rows(c));
     entry.set("count", plural(c.runs.size(), "run"));
     cases << entry;
   }

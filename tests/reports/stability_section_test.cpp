@@ -1,5 +1,3 @@
-#include "reports/stability_section.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -145,6 +143,24 @@ TEST(StabilitySection, TellsWhatBecameOfEveryExtreme) {
   const std::string surprises = text.substr(unexpected, text.find("</table>", unexpected) - unexpected);
   EXPECT_TRUE(has(surprises, "10 Pa"));
   EXPECT_FALSE(has(surprises, "1 kPa"));
+}
+
+TEST(StabilitySection, TellsRunsOfOneExpectationAndClassInOneRow) {
+  vv::CaseVerdict verdict = demo_extremes();
+  for (vv::RunVerdict& run : verdict.runs) {
+    run.stability = Class::accurate;
+    run.record.outcome = {};
+    run.behaviour = {};
+    run.gates = {class_gate("accurate", "accurate", true)};
+    run.gates[0].reason = "nothing is in its way";
+  }
+  verdict.runs[1].behaviour.error = 0.0077;
+  const std::string text = section_of(campaign_of(verdict));
+  const std::string table = text.substr(0, text.find("every run"));
+  EXPECT_TRUE(has(table, "3 runs, told by"));
+  EXPECT_TRUE(has(table, "7.7"));
+  EXPECT_TRUE(has(table, "nothing is in its way"));
+  EXPECT_EQ(table.find("as expected"), table.rfind("as expected"));
 }
 
 TEST(StabilitySection, SaysThatAllWasExpected) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
 
@@ -115,6 +117,34 @@ TEST(EnergyWatch, ChangesNoBit) {
   const ParticleFields watched = run(scene).particles();
   scene.watched = false;
   EXPECT_EQ(run(scene).particles().stress, watched.stress);
+}
+
+TEST(EnergyWatch, LooksForLessThanAHundredthOfTheTimeOfTheSteps) {
+  Scene scene = column_scene(Scheme::mpm, 100, 2);  // the cheapest step there is
+  scene.update_order = UpdateOrder::usl;
+  scene.watched = false;
+  scene.termination = AtTime{1e3};
+  Simulation simulation(scene);
+  const Particles<1, double> particles = fill_bodies<1, double>(scene, false);
+  EnergyWatch<1, double> watch;
+  watch.start(scene, particles, 1.0);
+  // The shortest of many turns: what disturbs one of them does not count.
+  const auto shortest = [](auto&& turn) {
+    double least = std::numeric_limits<double>::max();
+    for (int k = 0; k < 200; ++k) {
+      const auto began = std::chrono::steady_clock::now();
+      turn();
+      least = std::min(least, std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count());
+    }
+    return least;
+  };
+  const double steps = shortest([&] {
+    for (int k = 0; k < 64; ++k) simulation.advance();
+  });
+  const double looks = shortest([&] {
+    for (int k = 0; k < 64; ++k) watch.look(particles, {}, 1e-3, 0.0);
+  });
+  EXPECT_LT(looks / 64, 0.01 * steps);
 }
 
 TEST(SetParticles, GoesOnFromAnyState) {
