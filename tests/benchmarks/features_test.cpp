@@ -27,7 +27,8 @@ TEST(Features, have_names_of_their_own_and_scenes_that_differ) {
     EXPECT_TRUE(feature.name.starts_with("feature/")) << feature.name;
     EXPECT_EQ(std::count(names.begin(), names.end(), feature.name), 0) << feature.name;
     names.push_back(feature.name);
-    EXPECT_TRUE(feature.without.text != feature.with.text || feature.without.threads != feature.with.threads)
+    EXPECT_TRUE(feature.without.text != feature.with.text || feature.without.threads != feature.with.threads ||
+                feature.without.watched != feature.with.watched)
         << feature.name;
     if (feature.spelled) {
       const FeatureScene& unsaid = feature.spelled->is_of_with ? feature.with : feature.without;
