@@ -96,9 +96,9 @@ class StressUpdate {
   /// Volume, then stress of the particles in lanes of slots [Kiriyama15, Eqs. 11 and 12]. The Jaumann rate is
   /// integrated exactly for a constant spin: the stress is turned by the step's rotation.
   template <class Law>
-  void operator()(const Law& law, const Deformation<Dim, Value>& deformation, Eigen::Index slot,
-                  Points& particles) const {
-    if (compensates_) return update_compensated(law, deformation, slot, particles);
+  [[gnu::always_inline]] void operator()(const Law& law, const Deformation<Dim, Value>& deformation,
+                                         Eigen::Index slot, Points& particles) const {
+    if (compensates_) [[unlikely]] return update_compensated(law, deformation, slot, particles);
     SymmetricTensor<Dim, Value> stress = turned(stress_of(slot, particles), deformation);
     sum_strain(deformation, slot, particles);
     const auto& increment = deformation.strain_increment;
@@ -126,7 +126,7 @@ class StressUpdate {
     for (std::size_t k = 0; k < 4; ++k) old[k] = load<Value>(&particles.deformation_gradient[k][slot]);
     std::array<Value, 4> f{xx * old[0] + xy * old[2], xx * old[1] + xy * old[3],
                            yx * old[0] + yy * old[2], yx * old[1] + yy * old[3]};
-    if (compensates_) {
+    if (compensates_) [[unlikely]] {
       f = {increment[0] * old[0] + xy * old[2], increment[0] * old[1] + xy * old[3],
            yx * old[0] + increment[1] * old[2], yx * old[1] + increment[1] * old[3]};
       for (std::size_t k = 0; k < 4; ++k) {
@@ -150,7 +150,7 @@ class StressUpdate {
  private:
   /// The same with sums that keep what rounding cuts off them; turning the stress rounds it as ever.
   template <class Law>
-  void update_compensated(const Law& law, const Deformation<Dim, Value>& deformation, Eigen::Index slot,
+  [[gnu::noinline]] void update_compensated(const Law& law, Deformation<Dim, Value> deformation, Eigen::Index slot,
                           Points& particles) const {
     const SymmetricTensor<Dim, Value> before = turned(stress_of(slot, particles), deformation);
     sum_strain(deformation, slot, particles);

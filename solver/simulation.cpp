@@ -322,7 +322,7 @@ class Simulation::EngineOf final : public Simulation::Engine {
     const auto fault = stepper_.find_fault();
     if (fault.kind == StencilFault::none) return false;
     const bool is_place = fault.kind == StencilFault::outside_grid || fault.kind == StencilFault::not_finite;
-    fail(ending_of(fault.kind), fault.particle, fault.value + (is_place ? scene().grid_lower[0] : 0.0));
+    fail(ending_of(fault.kind), fault.particle, fault.value + (is_place ? scene().grid_lower[fault.axis] : 0.0));
     return true;
   }
 

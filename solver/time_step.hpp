@@ -318,20 +318,52 @@ class TimeStepper {
   }
 
   Deformation<Dim, Value> own_deformation_of_layer(std::size_t body, const Block& block, const Layer& layer) const {
-    const Motion motion = light_nodes_.empty()
-                              ? Transfers::template gather<false, true>(particles_, grid_, block, layer)
-                              : all_motion_of_layer(body, block, layer);
+    const Motion motion = straining_motion_of_layer(body, block, layer);
     return deformation_of<Dim, Value>(motion.gradient, time_step_of(layer.slot));
   }
 
   /// With light nodes as the scene treats them.
-  Motion all_motion_of_layer(std::size_t body, const Block& block, const Layer& layer) const {
+  [[gnu::always_inline]] Motion all_motion_of_layer(std::size_t body, const Block& block, const Layer& layer) const {
+    if (!light_nodes_.empty()) [[unlikely]] return motion_with_light_nodes(body, block, layer);
+    return Transfers::template gather<true, true>(particles_, grid_, block, layer);
+  }
+
+  /// Likewise, of the motion no more than what strains.
+  [[gnu::always_inline]] Motion straining_motion_of_layer(std::size_t body, const Block& block,
+                                                          const Layer& layer) const {
+    if (!light_nodes_.empty()) [[unlikely]] return motion_with_light_nodes(body, block, layer);
+    return Transfers::template gather<false, true>(particles_, grid_, block, layer);
+  }
+
+  // What few scenes have stays out of the loops of all others: such functions are not inlined, and take copies, so that
+  // nothing of a loop has to live in memory for their sake.
+
+  [[gnu::noinline]] Motion motion_with_light_nodes(std::size_t body, Block block, Layer layer) const {
     Motion motion = Transfers::template gather<true, true>(particles_, grid_, block, layer);
-    if (!light_nodes_.empty()) {
-      Transfers::slow_light_nodes(particles_, grid_, block, layer,
-                                  {light_nodes_[body], time_step_, empty_mass_}, motion);
-    }
+    Transfers::slow_light_nodes(particles_, grid_, block, layer, {light_nodes_[body], time_step_, empty_mass_}, motion);
     return motion;
+  }
+
+  [[gnu::noinline]] void accelerate_compensated(Vector<Dim, Value> change, Eigen::Index slot) {
+    for (std::size_t a = 0; a < Dim; ++a)
+      add_compensated(change[a], &particles_.velocity[a][slot], &particles_.low.velocity[a][slot]);
+  }
+
+  [[gnu::noinline]] void grow_compensated(Vector<Dim, Value> strain_increment, Eigen::Index slot) {
+    for (std::size_t a = 0; a < Dim; ++a) {
+      Real *const half_size = &particles_.half_size[a][slot], *const low = &particles_.low.half_size[a][slot];
+      const Value largest(largest_half_size_);
+      add_compensated(load<Value>(half_size) * strain_increment[a], half_size, low);
+      const Value grown = load<Value>(half_size);
+      store(select(grown < largest, grown, largest), half_size);
+      store(select(grown < largest, load<Value>(low), Value(0)), low);
+    }
+  }
+
+  /// Position and displacement.
+  [[gnu::noinline]] void add_up_compensated(Value travel, Eigen::Index slot, std::size_t axis) {
+    add_compensated(travel, &particles_.position[axis][slot], &particles_.low.position[axis][slot]);
+    add_compensated(travel, &particles_.displacement[axis][slot], &particles_.low.displacement[axis][slot]);
   }
 
   /// [body] The mass of a node that counts as full over that of a particle: the scene's fraction of a layer of
@@ -365,16 +397,19 @@ class TimeStepper {
   /// (1, FLIP); returns the distances to travel.
   Vector<Dim, Value> accelerate_layer(const Motion& motion, const Value& time_step, Eigen::Index slot) {
     Vector<Dim, Value> travel;
-    for (std::size_t a = 0; a < Dim; ++a) {
-      Real* const velocity = &particles_.velocity[a][slot];
-      const Value old = load<Value>(velocity);
-      if (compensates_) {
-        const Value change = flip_ * (time_step * motion.acceleration[a]) + (1 - flip_) * (motion.velocity[a] - old);
-        add_compensated(change, velocity, &particles_.low.velocity[a][slot]);
-      } else {
-        const Value flip_velocity = old + time_step * motion.acceleration[a];
-        store(motion.velocity[a] + flip_ * (flip_velocity - motion.velocity[a]), velocity);
+    if (compensates_) [[unlikely]] {
+      Vector<Dim, Value> change;
+      for (std::size_t a = 0; a < Dim; ++a) {
+        const Value old = load<Value>(&particles_.velocity[a][slot]);
+        change[a] = flip_ * (time_step * motion.acceleration[a]) + (1 - flip_) * (motion.velocity[a] - old);
+        travel[a] = time_step * motion.velocity[a];
       }
+      accelerate_compensated(change, slot);
+      return travel;
+    }
+    for (std::size_t a = 0; a < Dim; ++a) {
+      const Value flip_velocity = load<Value>(&particles_.velocity[a][slot]) + time_step * motion.acceleration[a];
+      store(motion.velocity[a] + flip_ * (flip_velocity - motion.velocity[a]), &particles_.velocity[a][slot]);
       travel[a] = time_step * motion.velocity[a];
     }
     return travel;
@@ -403,19 +438,16 @@ class TimeStepper {
   /// Half sizes of cpGIMP [Kiriyama15, Eq. 14], up to the scene's limit.
   void grow(const Deformation<Dim, Value>& deformation, Eigen::Index slot) {
     if constexpr (SchemeTraits<scheme>::updates_half_size) {
+      if (compensates_) [[unlikely]] {
+        Vector<Dim, Value> increment;
+        for (std::size_t a = 0; a < Dim; ++a) increment[a] = deformation.strain_increment[a];
+        return grow_compensated(increment, slot);
+      }
       for (std::size_t a = 0; a < Dim; ++a) {
         Real* const half_size = &particles_.half_size[a][slot];
         const Value largest(largest_half_size_);
-        if (compensates_) {
-          Real* const low = &particles_.low.half_size[a][slot];
-          add_compensated(load<Value>(half_size) * deformation.strain_increment[a], half_size, low);
-          const Value grown = load<Value>(half_size);
-          store(select(grown < largest, grown, largest), half_size);
-          store(select(grown < largest, load<Value>(low), Value(0)), low);
-        } else {
-          const Value grown = load<Value>(half_size) * (1 + deformation.strain_increment[a]);
-          store(select(grown < largest, grown, largest), half_size);
-        }
+        const Value grown = load<Value>(half_size) * (1 + deformation.strain_increment[a]);
+        store(select(grown < largest, grown, largest), half_size);
       }
     }
   }
@@ -425,15 +457,14 @@ class TimeStepper {
     Vector<Dim, Value> place;
     auto crosses = Value(0) > Value(0), is_good = Value(0) < load<Value>(&particles_.volume[slot]);
     for (std::size_t a = 0; a < Dim; ++a) {
-      Real *const position = &particles_.position[a][slot], *const displacement = &particles_.displacement[a][slot];
-      const Value before = load<Value>(position);
+      const Value before = load<Value>(&particles_.position[a][slot]);
       Value after = before + travel[a];
-      if (compensates_) {
-        add_compensated(travel[a], position, &particles_.low.position[a][slot]);
-        add_compensated(travel[a], displacement, &particles_.low.displacement[a][slot]);
-        after = load<Value>(position);
+      if (compensates_) [[unlikely]] {
+        add_up_compensated(travel[a], slot, a);
+        after = load<Value>(&particles_.position[a][slot]);
       } else {
-        store(after, position);
+        store(after, &particles_.position[a][slot]);
+        Real* const displacement = &particles_.displacement[a][slot];
         store(load<Value>(displacement) + travel[a], displacement);
       }
       place[a] = in_cells(grid_, after, a);

@@ -150,6 +150,7 @@ class Transfer {
     StencilFault kind = StencilFault::none;
     Eigen::Index particle = -1;
     double value = 0.0;
+    std::size_t axis = 0;  ///< of a place or half size: along which it is at fault
   };
   static Fault find_fault(const Points& particles, const Nodes& grid);
 
@@ -220,6 +221,8 @@ class Transfer {
   static void for_each_stray(const Points& particles, const Nodes& grid, const Block& block,
                              Eigen::Index slot, Visit&& visit);
   static StencilFault fault_of(const Points& particles, const Nodes& grid, Eigen::Index slot);
+  /// The first axis along which place or half size are not what a stencil can have; 0 if it is the volume.
+  static std::size_t axis_at_fault(const Points& particles, const Nodes& grid, Eigen::Index slot);
 };
 
 /// A place along an axis in cells from the grid's first node.
@@ -592,6 +595,19 @@ StencilFault Transfer<Dim, Real, scheme>::fault_of(const Points& particles, cons
 }
 
 template <int Dim, class Real, Scheme scheme>
+std::size_t Transfer<Dim, Real, scheme>::axis_at_fault(const Points& particles, const Nodes& grid, Eigen::Index slot) {
+  for (std::size_t axis = 0; axis < Dim; ++axis) {
+    const Real x = in_cells(grid, particles.position[axis][slot], axis);
+    const Real last = static_cast<Real>(grid.nodes(static_cast<int>(axis)) - 1 - Nodes::ghost_layers);
+    bool is_good = x >= Real(Nodes::ghost_layers) && x <= last;
+    if constexpr (SchemeTraits<scheme>::has_domain)
+      is_good = is_good && particles.half_size[axis][slot] * grid.cells_per_length() <= 1;
+    if (!is_good) return axis;
+  }
+  return 0;
+}
+
+template <int Dim, class Real, Scheme scheme>
 auto Transfer<Dim, Real, scheme>::find_fault(const Points& particles, const Nodes& grid) -> Fault {
   for (Eigen::Index p = 0; p < particles.count(); ++p) {
     const Eigen::Index slot = particles.slot_of[static_cast<std::size_t>(p)];
@@ -606,11 +622,12 @@ auto Transfer<Dim, Real, scheme>::find_fault(const Points& particles, const Node
       }
       continue;
     }
+    const std::size_t axis = axis_at_fault(particles, grid, slot);
     Real value = particles.volume[slot];
-    if (kind == StencilFault::domain_too_large) value = particles.half_size[0][slot];
+    if (kind == StencilFault::domain_too_large) value = particles.half_size[axis][slot];
     if (kind == StencilFault::outside_grid || kind == StencilFault::not_finite)
-      value = particles.position[0][slot];
-    return {kind, p, static_cast<double>(value)};
+      value = particles.position[axis][slot];
+    return {kind, p, static_cast<double>(value), axis};
   }
   return {};
 }

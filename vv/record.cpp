@@ -436,7 +436,7 @@ class Recorder {
 
   /// Often at first, when a run goes wrong at once; later so rarely that keeping the state costs nothing to speak of.
   static bool is_time_to_keep_state(std::int64_t step) {
-    constexpr std::int64_t first = 64, regularly = 1024;
+    constexpr std::int64_t first = 64, regularly = 2048;
     return step % regularly == 0 || (step < regularly && step >= first && (step & (step - 1)) == 0);
   }
 
