@@ -77,7 +77,7 @@ std::vector<double> without_spikes(const std::vector<double>& value) {
                     [&](std::size_t a, std::size_t b) { return distance[a] > distance[b]; });
   for (auto k = order.begin(); k != order.begin() + few; ++k) {
     const auto [least, most] = range_around(value, *k);
-    calm[*k] = std::clamp(value[*k], least, most);
+    if (least <= most) calm[*k] = std::clamp(value[*k], least, most);  // else no neighbour is a number
   }
   return calm;
 }

@@ -186,7 +186,7 @@ TEST(StabilitySection, SaysThatAllWasExpected) {
   verdict.runs[2].gates = {class_gate("oscillating", "oscillating", true)};
   const std::string text = section_of(campaign_of(verdict));
   EXPECT_FALSE(has(text, "What was not expected"));
-  EXPECT_TRUE(has(text, "Every run is of a class that was expected of it."));
+  EXPECT_TRUE(has(text, "Every run of which a class was expected is of that class."));
 }
 
 TEST(StabilitySection, ShowsWhyASceneWasRefused) {
